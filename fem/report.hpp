@@ -1,0 +1,41 @@
+// Why a run ended, how it went and where its energy is.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace drapeplan {
+
+/// Books of one run [J]. Work is booked per term with the mean of the two half-step velocities, so that
+/// kinetic = external - internal - friction - contact - damping - constraint closes to round-off.
+struct Energies {
+  double kinetic = 0;
+  double internal = 0;    ///< work done on the fabric, its hourglass part included
+  double external = 0;    ///< work of gravity and of the actuators
+  double friction = 0;    ///< taken by friction, its elastic part included
+  double contact = 0;     ///< stored by normal contact
+  double damping = 0;     ///< taken by mass damping
+  double constraint = 0;  ///< taken by interlinks, guides and tilt stops
+  double hourglass = 0;   ///< stored in hourglass modes; part of `internal`
+  double largest = 0;        ///< largest magnitude that any entry reached
+  double balance_error = 0;  ///< largest |balance| over the run / largest
+};
+
+enum class RunStatus { done, diverged };
+
+struct RunReport {
+  RunStatus status = RunStatus::done;
+  std::string message;  ///< why it ended
+  std::int64_t steps = 0;
+  double dt = 0;              ///< [s], of the simulation
+  double simulated_time = 0;  ///< [s], of the simulation (schedule time / time scaling)
+  double wall_seconds = 0;
+  double element_updates_per_second = 0;
+  Energies energy;
+  double largest_kinetic_ratio = 0;  ///< kinetic over internal energy at the end of each tenth, from the second on
+  double largest_penetration = 0;    ///< of the ply's underside below the mold, at the end [m]
+  double largest_link_error = 0;     ///< |length - spacing| of an interlink over the run [m]
+  std::uint64_t state_hash = 0;
+};
+
+}  // namespace drapeplan

@@ -1,0 +1,17 @@
+#include "fem/rig.hpp"
+
+namespace drapeplan {
+
+std::vector<std::array<int, 2>> interlinks(const RigOptions& rig) {
+  std::vector<std::array<int, 2>> pairs;
+  if (!rig.interlinks) return pairs;
+  for (int j = 0; j < rig.rows; ++j) {
+    for (int i = 0; i + 1 < rig.columns; ++i) pairs.push_back({j * rig.columns + i, j * rig.columns + i + 1});
+  }
+  for (int j = 0; j + 1 < rig.rows; ++j) {
+    for (int i = 0; i < rig.columns; ++i) pairs.push_back({j * rig.columns + i, (j + 1) * rig.columns + i});
+  }
+  return pairs;
+}
+
+}  // namespace drapeplan

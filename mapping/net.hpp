@@ -1,0 +1,63 @@
+// Kinematic energy mapping: from the flat ply to the draped net on the mold.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mapping/mold.hpp"
+
+namespace drapeplan {
+
+/// How the two fibre lines through the start point run over the mold.
+enum class Generators {
+  perpendicular,  ///< geodesics at right angles on the surface; the first one projects to the warp direction
+  axes,           ///< geodesics whose directions at the start project to the warp and weft directions
+  mid_sides,      ///< geodesics from the start point to the four mid-sides of the mold's extent (the seed's text)
+};
+
+/// Flat rectangular ply. Ply frame: origin in its middle, u along the warp, v along the weft [m].
+struct Ply {
+  double width = 0;                     ///< along u [m]
+  double height = 0;                    ///< along v [m]
+  Eigen::Vector2d position{0, 0};       ///< x-y place of the ply's middle before draping [m]
+  double angle = 0;                     ///< warp direction from +x [rad]
+};
+
+struct MappingOptions {
+  Generators generators = Generators::mid_sides;
+  Eigen::Vector2d start{0, 0};      ///< point of the mold where the mapping starts (x, y) [m]
+  Eigen::Vector2d ply_start{0, 0};  ///< point of the ply that is placed there (u, v) [m]
+  double cell_size = 0.005;         ///< largest edge of a net cell [m]
+};
+
+/// The mapped ply: a structured net of nodes on the mold; node (i, j) lies at u[i], v[j] of the ply.
+struct Net {
+  std::vector<double> u, v;             ///< increasing ply coordinates of the net lines [m]
+  std::vector<Eigen::Vector3d> nodes;   ///< node (i, j) at i + j * u.size(), on the mold [m]
+  bool converged = true;                ///< every cell's minimisation met its tolerance
+
+  [[nodiscard]] const Eigen::Vector3d& node(int i, int j) const { return nodes[size_t(i) + size_t(j) * u.size()]; }
+};
+
+/// Maps the ply onto the mold. Seed, "Energy Mapping Algorithm" (after Bergsma and Huisman): the fibre lines
+/// through the start point are geodesics; every other node is the free corner of a bilinear element that
+/// minimises the fibre strain energy of Eq. (3).
+/// @throws std::domain_error with the place where the mold ends or the minimisation fails.
+Net map_ply(const Mold& mold, const Ply& ply, const MappingOptions& options);
+
+/// Mapped place of the ply point (u, v) [m]: bicubic in x-y between net nodes, then put on the mold.
+/// @throws std::out_of_range outside the ply.
+Eigen::Vector3d mapped_point(const Net& net, const Mold& mold, const Eigen::Vector2d& uv);
+
+/// Net nodes along the ply's outline, counter-clockwise in the ply from corner (-,-); closed: the first point is
+/// repeated at the end [m].
+std::vector<Eigen::Vector3d> prescribed_boundary(const Net& net);
+
+/// The four mapped corners in ply order (-,-), (+,-), (+,+), (-,+) [m].
+std::vector<Eigen::Vector3d> mapped_corners(const Net& net);
+
+/// Shear angle at the middle of each cell [rad]: change of the angle between warp and weft, > 0 where the angle
+/// closes. Cell (i, j) at i + j * (u.size() - 1).
+std::vector<double> shear_field(const Net& net);
+
+}  // namespace drapeplan
