@@ -1,0 +1,101 @@
+#include "fem/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "fem/contact.hpp"
+
+namespace drapeplan {
+namespace {
+
+/// Squared radius of gyration of directors, per unit of nodal mass [m^2]: that of the section, enlarged like A/9 as in
+/// established explicit codes, and further where the director's own rows would otherwise govern the step.
+double gyration_squared(double thickness, double area, double translation, double rotation) {
+  constexpr double kElementShare = 1.0 / 9;
+  return std::max(thickness * thickness / 12 + kElementShare * area, rotation / translation);
+}
+
+}  // namespace
+
+Model::Model(Scene scene) : scene_(std::move(scene)) {
+  const Mesh& mesh = scene_.mesh;
+  const auto n = size_t(mesh.node_count());
+  const FemOptions& options = scene_.options;
+  if (scene_.friction && !scene_.mold) throw std::invalid_argument("friction needs a mold");
+  const std::vector<double> area = nodal_areas(mesh);
+  std::vector<double> unscaled(n);
+  for (size_t k = 0; k < n; ++k) unscaled[k] = scene_.fabric.areal_density * area[k];
+
+  auto shell = make_shell(mesh, scene_.fabric, options);
+  shell_ = shell.get();
+  terms_.push_back(std::move(shell));
+  NodalStiffness stiffness{std::vector<double>(n, 0.0), std::vector<double>(n, 0.0), std::vector<double>(n, 0.0)};
+  terms_.front()->add_stiffness(stiffness);
+  if (scene_.gravity) terms_.push_back(make_gravity(unscaled, *scene_.gravity));
+  if (scene_.mold) {
+    std::vector<double> contact(stiffness.translation);
+    for (double& k : contact) k *= options.contact_stiffness;
+    terms_.push_back(make_contact(*scene_.mold, scene_.friction, std::move(contact), scene_.fabric.thickness / 2));
+    terms_.back()->add_stiffness(stiffness);
+  }
+
+  mass_.assign(padded(int(n)), 0.0);
+  inertia_ = inverse_mass_ = inverse_inertia_ = mass_;
+  double largest = 0;  // bound of the highest squared frequency, Gershgorin's rows
+  for (size_t k = 0; k < n; ++k) {
+    const double gyration2 =
+        gyration_squared(scene_.fabric.thickness, area[k], stiffness.translation[k], stiffness.rotation[k]);
+    mass_[k] = options.mass_scaling * unscaled[k];
+    inertia_[k] = gyration2 * mass_[k];
+    largest = std::max(largest, (stiffness.translation[k] + stiffness.coupling[k] / std::sqrt(gyration2)) / mass_[k]);
+  }
+  stable_dt_ = 2 / std::sqrt(largest);
+  alpha_ = scene_.damping.value_or(0) / std::sqrt(options.mass_scaling);
+
+  std::vector<int> held = scene_.clamped;
+  if (scene_.rig) {
+    const Eigen::Rotation2Dd turn(scene_.angle);
+    std::vector<Eigen::Vector2d> place;
+    for (int g = 0; g < scene_.rig->count(); ++g) place.emplace_back(scene_.position + turn * scene_.rig->place(g));
+    rig_.emplace(*scene_.rig, mesh.rest, mass_, inertia_, place, scene_.angle);
+    held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
+  }
+  for (const int node : held) mass_[size_t(node)] = inertia_[size_t(node)] = 0;
+  for (size_t k = 0; k < n; ++k) {
+    inverse_mass_[k] = mass_[k] > 0 ? 1 / mass_[k] : 0;
+    inverse_inertia_[k] = inertia_[k] > 0 ? 1 / inertia_[k] : 0;
+  }
+}
+
+std::vector<std::string> Model::term_names() const {
+  std::vector<std::string> names;
+  for (const auto& term : terms_) names.emplace_back(term->name());
+  if (scene_.damping) names.emplace_back("mass damping");
+  if (rig_) names.emplace_back(scene_.rig->interlinks ? "gripper rig with interlinks" : "gripper rig");
+  if (!scene_.clamped.empty()) names.emplace_back("clamp");
+  return names;
+}
+
+State Model::flat_state(double height) const {
+  const int n = node_count();
+  State state;
+  state.x = state.v = state.d = state.w = VectorField(n);
+  if (scene_.friction) {
+    state.anchor = VectorField(n);
+    state.stuck.assign(padded(n), 0.0);
+  }
+  const Eigen::Rotation2Dd turn(scene_.angle);
+  for (size_t k = 0; k < padded(n); ++k) {  // padding repeats the last node: finite and never read back
+    const Eigen::Vector2d xy = scene_.position + turn * scene_.mesh.rest[std::min(k, size_t(n) - 1)];
+    state.x.x[k] = xy.x();
+    state.x.y[k] = xy.y();
+    state.x.z[k] = height;
+    state.d.z[k] = 1;
+  }
+  if (rig_) rig_->place(state, height);
+  return state;
+}
+
+}  // namespace drapeplan

@@ -1,0 +1,74 @@
+// A scene, and the model built from it: const, shared by all candidates and threads.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fem/fabric.hpp"
+#include "fem/gripper_rig.hpp"
+#include "fem/mesh.hpp"
+#include "fem/options.hpp"
+#include "fem/shell.hpp"
+#include "fem/term.hpp"
+#include "mapping/mold.hpp"
+
+namespace drapeplan {
+
+/// What is there. Parts that are absent add no term, no memory and no work.
+struct Scene {
+  Mesh mesh;
+  Fabric fabric;
+  FemOptions options;
+  Eigen::Vector2d position{0, 0};    ///< x-y of the ply frame's origin in the flat start [m]
+  double angle = 0;                  ///< warp direction from +x in the flat start [rad]
+  double start_height = 0;           ///< of the flat ply without a rig; with a rig the schedule says it [m]
+  std::optional<double> gravity;     ///< [m/s^2]
+  std::optional<double> damping;     ///< mass-proportional rate alpha of the unscaled ply [1/s]
+  std::optional<Mold> mold;
+  std::optional<double> friction;    ///< needs a mold
+  std::optional<RigOptions> rig;
+  std::vector<int> clamped;          ///< nodes that never move or turn
+};
+
+/// The discrete system: masses, terms, stable step.
+class Model {
+ public:
+  /// @throws std::invalid_argument with the reason for a scene that cannot be built.
+  explicit Model(Scene scene);
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] int node_count() const { return scene_.mesh.node_count(); }
+  [[nodiscard]] const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
+  [[nodiscard]] const Shell& shell() const { return *shell_; }
+  [[nodiscard]] const std::optional<GripperRig>& rig() const { return rig_; }
+  [[nodiscard]] std::vector<std::string> term_names() const;
+
+  /// Step that is played: step_safety times the estimated stable one [s].
+  [[nodiscard]] double dt() const { return scene_.options.step_safety * stable_dt_; }
+  [[nodiscard]] double stable_dt() const { return stable_dt_; }
+  /// Damping rate on the scaled mass [1/s]: with a mass s times larger, modes are sqrt(s) times slower, and so is what
+  /// damps them critically.
+  [[nodiscard]] double alpha() const { return alpha_; }
+
+  /// Scaled masses [kg] and director inertias [kg m^2] of free nodes; 0 for clamped and tied ones; padded.
+  [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
+  [[nodiscard]] const std::vector<double>& inertia() const { return inertia_; }
+  /// 1 / mass, 1 / inertia, 0 for clamped and tied nodes; padded.
+  [[nodiscard]] const std::vector<double>& inverse_mass() const { return inverse_mass_; }
+  [[nodiscard]] const std::vector<double>& inverse_inertia() const { return inverse_inertia_; }
+
+  /// The flat ply at rest at `height` [m].
+  [[nodiscard]] State flat_state(double height) const;
+
+ private:
+  Scene scene_;
+  std::vector<std::unique_ptr<Term>> terms_;
+  const Shell* shell_ = nullptr;
+  std::optional<GripperRig> rig_;
+  std::vector<double> mass_, inertia_, inverse_mass_, inverse_inertia_;
+  double stable_dt_ = 0, alpha_ = 0;
+};
+
+}  // namespace drapeplan

@@ -1,0 +1,182 @@
+// One-point director shell with fabric law: forces of one lane-block of elements.
+//
+// Source: seed, "Transient Nonlinear FE Model" (reduced integration, first-order shear deformation, nominal stress over
+// nominal strain along the fibres, decoupled modes, bending through section points).
+// Differs: total-Lagrangian with unit directors d instead of rotations, so rigid motion is exact.
+//
+// At the element's middle, with X the flat rest place and h = (1, -1, 1, -1) over the corners:
+//   a_k = x,k    c_k = d,k    dm = mean d    fibre vectors at height s of the section: f_k = a_k + s c_k
+//   nominal strain e_k = |f_k| - 1,  shear angle: sin g = f_1.f_2 / (|f_1||f_2|),  transverse shear a_k . dm
+// Energy per rest area = sum over section points of w t [ U(e_1) + U(e_2) + V(g) ] + K G t (s_1^2 + s_2^2) / 2.
+// With S = tau / cos g (tabulated over sin g) the force conjugate to f_1 is  T_1 n_1 + S (n_2 - sin g n_1) / |f_1|.
+//
+// Hourglass: hx = h.x - (h.X) a_1 - (h.Y) a_2 vanishes for every linear field; likewise hd. Their stiffness is the
+// physical one of the bilinear element for a fibre in compression (in-plane part and directors), and the linear part of
+// the transverse shear strain that the middle misses, as in the MITC4 element (Dvorkin and Bathe 1984).
+#pragma once
+
+#include <array>
+
+#include "fem/lanes.hpp"
+#include "fem/lookup.hpp"
+
+namespace drapeplan {
+
+/// Rest geometry of one element, or of a block of them.
+template <class V>
+struct ElementGeometry {
+  V b10, b11, b20, b21;    ///< gradient of the middle: d/du = b10, b11, -b10, -b11; d/dv likewise [1/m]
+  V area;                  ///< [m^2]
+  V half1, half2;          ///< half the element's length along each fibre [m]
+  V skew1, skew2;          ///< h.X and h.Y: zero for a parallelogram [m]
+};
+
+/// Corner values of one element, or of a block: positions or directors.
+template <class V>
+using Corners = std::array<Vec3<V>, 4>;
+
+/// Gauss points and weights over the thickness, in units of the thickness.
+template <int N>
+struct Section;
+template <>
+struct Section<1> {
+  static constexpr std::array<double, 1> place{0.0}, weight{1.0};
+};
+template <>
+struct Section<3> {
+  static constexpr std::array<double, 3> place{-0.38729833462074170, 0.0, 0.38729833462074170};
+  static constexpr std::array<double, 3> weight{5.0 / 18, 8.0 / 18, 5.0 / 18};
+};
+template <>
+struct Section<5> {
+  static constexpr std::array<double, 5> place{-0.45308992296933199, -0.26923465505284155, 0.0, 0.26923465505284155,
+                                               0.45308992296933199};
+  static constexpr std::array<double, 5> weight{0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
+                                                0.23931433524968324, 0.11846344252809454};
+};
+
+/// The fabric as the kernel needs it.
+struct KernelMaterial {
+  Lookup fibre;         ///< nominal stress over nominal strain, tension and compression [Pa]
+  Lookup shear;         ///< tau / cos g over sin g [Pa]
+  double thickness = 0;
+  double transverse = 0;         ///< K G t [N/m]
+  double hourglass_modulus = 0;  ///< [Pa]
+};
+
+/// Derivatives of a block: what the kernel computes from corners before it needs the law.
+template <class V>
+struct ElementMotion {
+  Vec3<V> a1, a2, c1, c2, mean, hx, hd;
+};
+
+template <class V>
+ElementMotion<V> element_motion(const ElementGeometry<V>& g, const Corners<V>& x, const Corners<V>& d) {
+  const Vec3<V> p = x[0] - x[2], q = x[1] - x[3], dp = d[0] - d[2], dq = d[1] - d[3];
+  ElementMotion<V> m;
+  m.a1 = g.b10 * p + g.b11 * q;
+  m.a2 = g.b20 * p + g.b21 * q;
+  m.c1 = g.b10 * dp + g.b11 * dq;
+  m.c2 = g.b20 * dp + g.b21 * dq;
+  m.mean = V(0.25) * ((d[0] + d[2]) + (d[1] + d[3]));
+  m.hx = (x[0] + x[2]) - (x[1] + x[3]) - g.skew1 * m.a1 - g.skew2 * m.a2;
+  m.hd = (d[0] + d[2]) - (d[1] + d[3]) - g.skew1 * m.c1 - g.skew2 * m.c2;
+  return m;
+}
+
+/// In-plane and director hourglass stiffness [N/m], [N m] of an element: E t A / (12 h^2) with the mean of both fibres.
+template <class V>
+struct HourglassStiffness {
+  V membrane, director;
+};
+template <class V>
+HourglassStiffness<V> hourglass_stiffness(const ElementGeometry<V>& g, const KernelMaterial& material) {
+  const V shape = g.area * (V(1.0) / (g.half1 * g.half1) + V(1.0) / (g.half2 * g.half2)) * V(1.0 / 96);
+  const double t = material.thickness;
+  return {V(material.hourglass_modulus * t) * shape, V(material.hourglass_modulus * t * t * t / 12) * shape};
+}
+
+/// Forces that the element exerts on its corners: on positions [N] and on directors [N m].
+template <int N, class V>
+void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, const Corners<V>& x, const Corners<V>& d,
+                  Corners<V>& force, Corners<V>& moment) {
+  using std::sqrt;
+  const ElementMotion<V> m = element_motion(g, x, d);
+  const V zero(0.0), one(1.0);
+  Vec3<V> n1{zero, zero, zero}, n2 = n1, m1 = n1, m2 = n1;
+
+  for (size_t k = 0; k < size_t(N); ++k) {
+    const V s(Section<N>::place[k] * material.thickness), w(Section<N>::weight[k] * material.thickness);
+    const Vec3<V> f1 = m.a1 + s * m.c1, f2 = m.a2 + s * m.c2;
+    const V length1 = sqrt(dot(f1, f1)), length2 = sqrt(dot(f2, f2));
+    const V inverse1 = one / length1, inverse2 = one / length2;
+    const V sine = dot(f1, f2) * inverse1 * inverse2;
+    const V t1 = material.fibre(V(length1 - one)), t2 = material.fibre(V(length2 - one)), shear = material.shear(sine);
+    const V both = w * shear * inverse1 * inverse2;
+    const Vec3<V> p1 = (w * (t1 - shear * sine * inverse1) * inverse1) * f1 + both * f2;
+    const Vec3<V> p2 = (w * (t2 - shear * sine * inverse2) * inverse2) * f2 + both * f1;
+    n1 = n1 + p1;
+    n2 = n2 + p2;
+    m1 = m1 + s * p1;
+    m2 = m2 + s * p2;
+  }
+
+  // Transverse shear at the middle, and its linear part (MITC4).
+  const V q(material.transverse);
+  const V s1 = dot(m.a1, m.mean), s2 = dot(m.a2, m.mean), warp = dot(m.hx, m.mean);
+  const V quarter1 = V(0.25) / g.half1, quarter2 = V(0.25) / g.half2;
+  const V l1 = (q * V(1.0 / 3)) * (quarter1 * warp + g.half2 * dot(m.a1, m.c2));
+  const V l2 = (q * V(1.0 / 3)) * (quarter2 * warp + g.half1 * dot(m.a2, m.c1));
+  n1 = n1 + (q * s1) * m.mean + (l1 * g.half2) * m.c2;
+  n2 = n2 + (q * s2) * m.mean + (l2 * g.half1) * m.c1;
+  m2 = m2 + (l1 * g.half2) * m.a1;
+  m1 = m1 + (l2 * g.half1) * m.a2;
+  const V l = l1 * quarter1 + l2 * quarter2;
+  const HourglassStiffness<V> h = hourglass_stiffness(g, material);
+  const Vec3<V> on_mean = g.area * ((q * s1) * m.a1 + (q * s2) * m.a2 + l * m.hx) - (h.membrane * warp) * m.hx;
+  const Vec3<V> on_hx = (g.area * l - h.membrane * warp) * m.mean + h.membrane * m.hx;
+  const Vec3<V> on_hd = h.director * m.hd;
+
+  // From derivatives back to corners; a force is minus the energy's derivative.
+  const auto spread = [&g](const Vec3<V>& on1, const Vec3<V>& on2, const Vec3<V>& on_h, const Vec3<V>& on_all, Corners<V>& out) {
+    const Vec3<V> r1 = g.area * on1 - g.skew1 * on_h, r2 = g.area * on2 - g.skew2 * on_h;
+    const Vec3<V> p = g.b10 * r1 + g.b20 * r2, r = g.b11 * r1 + g.b21 * r2;
+    out[0] = V(-1.0) * (on_all + p + on_h);
+    out[1] = V(-1.0) * (on_all + r - on_h);
+    out[2] = p - on_all - on_h;
+    out[3] = r - on_all + on_h;
+  };
+  spread(n1, n2, on_hx, {zero, zero, zero}, force);
+  spread(m1, m2, on_hd, V(0.25) * on_mean, moment);
+}
+
+/// Stored energy of one element [J].
+struct ElementEnergy {
+  double fabric = 0, hourglass = 0;
+};
+
+template <int N>
+ElementEnergy shell_energy(const ElementGeometry<double>& g, const KernelMaterial& material, const Corners<double>& x,
+                           const Corners<double>& d) {
+  const ElementMotion<double> m = element_motion(g, x, d);
+  double density = 0;
+  for (size_t k = 0; k < size_t(N); ++k) {
+    const double s = Section<N>::place[k] * material.thickness, w = Section<N>::weight[k] * material.thickness;
+    const Vec3<double> f1 = m.a1 + s * m.c1, f2 = m.a2 + s * m.c2;
+    const double length1 = std::sqrt(dot(f1, f1)), length2 = std::sqrt(dot(f2, f2));
+    const double sine = dot(f1, f2) / (length1 * length2);
+    density += w * (material.fibre.integral(length1 - 1) + material.fibre.integral(length2 - 1) +
+                    material.shear.integral(sine));
+  }
+  const double s1 = dot(m.a1, m.mean), s2 = dot(m.a2, m.mean), warp = dot(m.hx, m.mean);
+  const double l1 = 0.25 / g.half1 * warp + g.half2 * dot(m.a1, m.c2);
+  const double l2 = 0.25 / g.half2 * warp + g.half1 * dot(m.a2, m.c1);
+  const HourglassStiffness<double> h = hourglass_stiffness(g, material);
+  ElementEnergy energy;
+  energy.fabric = g.area * (density + 0.5 * material.transverse * (s1 * s1 + s2 * s2));
+  energy.hourglass = g.area * material.transverse / 6 * (l1 * l1 + l2 * l2) +
+                     0.5 * h.membrane * (dot(m.hx, m.hx) - warp * warp) + 0.5 * h.director * dot(m.hd, m.hd);
+  return energy;
+}
+
+}  // namespace drapeplan

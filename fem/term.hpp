@@ -1,0 +1,40 @@
+// A scene is a list of terms: each adds forces to nodes; what a scene does not need is not in the list.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "fem/lanes.hpp"
+#include "fem/state.hpp"
+
+namespace drapeplan {
+
+/// Forces of one term on the nodes, booked under one entry of the ledger.
+struct Forces {
+  Book book = Book::internal;
+  VectorField force;   ///< [N]
+  VectorField moment;  ///< on directors [N m]; empty if the term never touches them
+};
+
+/// Upper bounds of the stiffness that acts on each node: sums of absolute rows. Limits of terms add.
+struct NodalStiffness {
+  std::vector<double> translation;  ///< [N/m]
+  std::vector<double> rotation;     ///< of directors [N m]
+  std::vector<double> coupling;     ///< between both [N]
+};
+
+/// A term is const after the model is built; candidates and threads share it. What changes lives in State, what may be
+/// thrown away at any step lives in the term's entries of the workspace.
+class Term {
+ public:
+  virtual ~Term() = default;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  /// Entries of the workspace that this term writes, in the order in which forces() gets them.
+  [[nodiscard]] virtual std::vector<Forces> entries() const = 0;
+  /// Adds the term's stiffness bounds in the rest shape.
+  virtual void add_stiffness(NodalStiffness& stiffness) const = 0;
+  /// Overwrites the term's entries with its forces at the state's positions. Contact moves its anchors.
+  virtual void forces(State& state, Forces* entries) const = 0;
+};
+
+}  // namespace drapeplan

@@ -1,0 +1,37 @@
+// Scratch of one run: may be thrown away at any step without changing a bit.
+#pragma once
+
+#include <vector>
+
+#include "fem/model.hpp"
+
+namespace drapeplan {
+
+struct Workspace {
+  explicit Workspace(const Model& model);
+
+  std::vector<Forces> entries;   ///< of all terms, in order
+  std::vector<size_t> first;     ///< entry of each term
+  VectorField mean_v, mean_w;    ///< means of the half-step velocities
+  RigScratch rig;
+};
+
+/// Forces of all terms at the state's positions.
+void compute_forces(const Model& model, State& state, Workspace& work);
+
+/// Velocities of free nodes from t - dt/2 to t + dt/2, and their means.
+void kick_nodes(const Model& model, State& state, Workspace& work);
+
+/// Velocities of pads and means of their nodes.
+void kick_pads(const Model& model, State& state, const RigDrive& drive, Workspace& work, RigRecord& record);
+
+/// Books the work of all terms and of mass damping with mean velocities.
+void book_work(const Model& model, State& state, const Workspace& work);
+
+/// Positions and directors from t to t + dt.
+void drift_nodes(const Model& model, State& state);
+
+/// Kinetic energy of nodes and pads [J].
+double kinetic_energy(const Model& model, const State& state);
+
+}  // namespace drapeplan
