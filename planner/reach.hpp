@@ -10,15 +10,17 @@
 
 namespace drapeplan {
 
-/// Pads lie on the mold; joints stand `ply_thickness + joint_offset` above it along its normal at the pad's centre;
-/// interlinks keep their length between joints; the fixed joint keeps its place; no pad tilts beyond its limit.
-/// Only the rig's geometry is asked: fabric forces, friction and actuator limits can make the outcome worse only.
+/// Pads lie on the mold; joints stand `ply_thickness + joint_offset` above it along its normal at the pad's
+/// centre; interlinks keep their length between joints; the fixed joint keeps its place; no pad tilts beyond
+/// its limit. Only the rig's geometry is asked: fabric forces, friction and actuator limits can make the
+/// outcome worse only.
 struct ReachProblem {
   RigOptions rig;
   Mold mold;
-  std::vector<Eigen::Vector3d> targets;  ///< mapped places of the pad centres on the mold [m], one per gripper
-  Eigen::Vector2d fixed_place{0, 0};     ///< x-y of the fixed joint, used where rig.fixed is set [m]
-  double ply_thickness = 0;              ///< between mold and pad [m]
+  std::vector<Eigen::Vector3d>
+      targets;                        ///< mapped places of the pad centres on the mold [m], one per gripper
+  Eigen::Vector2d fixed_place{0, 0};  ///< x-y of the fixed joint, used where rig.fixed is set [m]
+  double ply_thickness = 0;           ///< between mold and pad [m]
 };
 
 /// The floor again with one part of the rig changed: it shows what causes the floor.
@@ -47,9 +49,9 @@ struct ReachResult {
   double wall_seconds = 0;
 };
 
-/// Solves the reach problem with Ipopt and exact derivatives, from the targets and `random_starts` perturbed starts;
-/// the best of them counts. Never throws for a geometry that cannot be satisfied: `converged` is false then.
-/// Calls from several threads are served one after the other (see planner/ipopt_lock.hpp).
+/// Solves the reach problem with Ipopt and exact derivatives, from the targets and `random_starts` perturbed
+/// starts; the best of them counts. Never throws for a geometry that cannot be satisfied: `converged` is
+/// false then. Calls from several threads are served one after the other (see planner/ipopt_lock.hpp).
 ReachResult solve_reach(const ReachProblem& problem, int random_starts = 2, unsigned seed = 1);
 
 /// What the floor means, for a process engineer, in a few sentences.

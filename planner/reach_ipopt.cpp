@@ -4,21 +4,23 @@
 #include <IpIpoptData.hpp>
 #include <IpTNLP.hpp>
 #include <algorithm>
+#include <cmath>
 
 #include "planner/ipopt_lock.hpp"
 
 namespace drapeplan {
 namespace {
 
-constexpr double kTolerance = 1e-11;    // of optimality and constraints; lengths are in units of the spacing
-constexpr int kMaxIterations = 300;     // a solvable problem takes 10 to 30
-constexpr double kMaxCpuSeconds = 5;    // of the whole process, all threads: a guard against a hang only
-constexpr double kIpoptInfinity = 2e19;  // Ipopt takes bounds beyond 1e19 for none
+constexpr double kTolerance = 1e-11;  // of optimality and constraints; lengths are in units of the spacing
+constexpr int kMaxIterations = 300;   // a solvable problem takes 10 to 30
+constexpr double kMaxCpuSeconds = 5;  // of the whole process, all threads: a guard against a hang only
 
 using Ipopt::Index;
 using Ipopt::Number;
 
-Eigen::Map<const Eigen::VectorXd> view(const Number* values, Index n) { return {values, n}; }
+Eigen::Map<const Eigen::VectorXd> view(const Number* values, Index n) {
+  return {values, n};
+}
 
 /// Hands finite values over; not finite ones tell Ipopt to shorten its step (the mold ends there).
 bool give(const Eigen::VectorXd& values, Number* result) {
@@ -47,12 +49,13 @@ class Adapter final : public Ipopt::TNLP {
     return true;
   }
 
-  bool get_bounds_info(Index, Number* x_lower, Number* x_upper, Index, Number* g_lower, Number* g_upper) override {
+  bool get_bounds_info(Index, Number* x_lower, Number* x_upper, Index, Number* g_lower,
+                       Number* g_upper) override {
     const ReachNlp::Bounds x = nlp_.variable_bounds(), g = nlp_.constraint_bounds();
-    give(x.lower.cwiseMax(-kIpoptInfinity), x_lower);
-    give(x.upper.cwiseMin(kIpoptInfinity), x_upper);
-    give(g.lower.cwiseMax(-kIpoptInfinity), g_lower);
-    give(g.upper.cwiseMin(kIpoptInfinity), g_upper);
+    std::copy(x.lower.begin(), x.lower.end(), x_lower);  // Ipopt takes bounds beyond 1e19 for none
+    std::copy(x.upper.begin(), x.upper.end(), x_upper);
+    std::copy(g.lower.begin(), g.lower.end(), g_lower);
+    std::copy(g.upper.begin(), g.upper.end(), g_upper);
     return true;
   }
 
@@ -102,16 +105,26 @@ class Adapter final : public Ipopt::TNLP {
 
 std::string in_words(Ipopt::ApplicationReturnStatus status) {
   switch (status) {
-    case Ipopt::Solve_Succeeded: return "solved";
-    case Ipopt::Solved_To_Acceptable_Level: return "solved to a looser tolerance only";
-    case Ipopt::Infeasible_Problem_Detected: return "no position keeps all constraints (locally infeasible)";
-    case Ipopt::Restoration_Failed: return "no position that keeps all constraints was found (restoration failed)";
-    case Ipopt::Maximum_Iterations_Exceeded: return "iteration limit reached";
-    case Ipopt::Maximum_CpuTime_Exceeded: return "time limit reached";
-    case Ipopt::Invalid_Number_Detected: return "the mold is not defined where the search went";
-    case Ipopt::Diverging_Iterates: return "the search diverged";
-    case Ipopt::Not_Enough_Degrees_Of_Freedom: return "more constraints than freedoms";
-    default: return "Ipopt ended with code " + std::to_string(int(status));
+    case Ipopt::Solve_Succeeded:
+      return "solved";
+    case Ipopt::Solved_To_Acceptable_Level:
+      return "solved to a looser tolerance only";
+    case Ipopt::Infeasible_Problem_Detected:
+      return "no position keeps all constraints (locally infeasible)";
+    case Ipopt::Restoration_Failed:
+      return "no position that keeps all constraints was found (restoration failed)";
+    case Ipopt::Maximum_Iterations_Exceeded:
+      return "iteration limit reached";
+    case Ipopt::Maximum_CpuTime_Exceeded:
+      return "time limit reached";
+    case Ipopt::Invalid_Number_Detected:
+      return "the mold is not defined where the search went";
+    case Ipopt::Diverging_Iterates:
+      return "the search diverged";
+    case Ipopt::Not_Enough_Degrees_Of_Freedom:
+      return "more constraints than freedoms";
+    default:
+      return "Ipopt ended with code " + std::to_string(int(status));
   }
 }
 
@@ -133,7 +146,8 @@ IpoptOutcome minimise(const ReachNlp& nlp, const Eigen::VectorXd& start) {
   application->Options()->SetNumericValue("constr_viol_tol", kTolerance);
   application->Options()->SetIntegerValue("max_iter", kMaxIterations);
   application->Options()->SetNumericValue("max_cpu_time", kMaxCpuSeconds);
-  application->Options()->SetStringValue("nlp_scaling_method", "none");  // the variables are of order 1 already
+  application->Options()->SetStringValue("nlp_scaling_method",
+                                         "none");  // the variables are of order 1 already
   // An empty name: by default an ipopt.opt in the working directory would change the result.
   const Ipopt::ApplicationReturnStatus ready = application->Initialize("");
   if (ready != Ipopt::Solve_Succeeded) {

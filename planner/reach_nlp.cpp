@@ -18,7 +18,8 @@ Jet in_units(Jet s, double unit) {
   return s;
 }
 
-/// Unit normal n(a, b) = (-a, -b, 1) / sqrt(1 + a^2 + b^2) of the slopes a = z,x and b = z,y, by the chain rule.
+/// Unit normal n(a, b) = (-a, -b, 1) / sqrt(1 + a^2 + b^2) of the slopes a = z,x and b = z,y, by the chain
+/// rule.
 VectorJet normal_jet(const Jet& s) {
   const double a = s.zx, b = s.zy;
   const double r = 1 / std::sqrt(1 + a * a + b * b), r3 = r * r * r, r5 = r3 * r * r;
@@ -33,10 +34,12 @@ VectorJet normal_jet(const Jet& s) {
   n.value = r * m;
   n.x = na * s.zxx + nb * s.zxy;
   n.y = na * s.zxy + nb * s.zyy;
-  n.xx = naa * (s.zxx * s.zxx) + nab * (2 * s.zxx * s.zxy) + nbb * (s.zxy * s.zxy) + na * s.zxxx + nb * s.zxxy;
+  n.xx =
+      naa * (s.zxx * s.zxx) + nab * (2 * s.zxx * s.zxy) + nbb * (s.zxy * s.zxy) + na * s.zxxx + nb * s.zxxy;
   n.xy = naa * (s.zxx * s.zxy) + nab * (s.zxx * s.zyy + s.zxy * s.zxy) + nbb * (s.zxy * s.zyy) + na * s.zxxy +
          nb * s.zxyy;
-  n.yy = naa * (s.zxy * s.zxy) + nab * (2 * s.zxy * s.zyy) + nbb * (s.zyy * s.zyy) + na * s.zxyy + nb * s.zyyy;
+  n.yy =
+      naa * (s.zxy * s.zxy) + nab * (2 * s.zxy * s.zyy) + nbb * (s.zyy * s.zyy) + na * s.zxyy + nb * s.zyyy;
   return n;
 }
 
@@ -54,7 +57,8 @@ constexpr std::array<std::array<int, 2>, 3> kLower{{{0, 0}, {1, 0}, {1, 1}}};
 GripperJet gripper_jet(const Mold& mold, const Eigen::Vector2d& place, double offset, double unit) {
   const Jet s = in_units(mold.jet(place.x() * unit, place.y() * unit), unit);
   GripperJet jet;
-  jet.pad = {{place.x(), place.y(), s.z}, {1, 0, s.zx}, {0, 1, s.zy}, {0, 0, s.zxx}, {0, 0, s.zxy}, {0, 0, s.zyy}};
+  jet.pad = {
+      {place.x(), place.y(), s.z}, {1, 0, s.zx}, {0, 1, s.zy}, {0, 0, s.zxx}, {0, 0, s.zxy}, {0, 0, s.zyy}};
   jet.normal = normal_jet(s);
   jet.joint = sum(jet.pad, jet.normal, offset);
   return jet;
@@ -155,7 +159,8 @@ std::vector<GripperJet> ReachNlp::jets(const VectorRef& v) const {
   const double offset = (problem_->rig.joint_offset + problem_->ply_thickness) / unit_;
   std::vector<GripperJet> all;
   all.reserve(size_t(count_));
-  for (int i = 0; i < count_; ++i) all.push_back(gripper_jet(problem_->mold, v.segment<2>(2 * i), offset, unit_));
+  for (int i = 0; i < count_; ++i)
+    all.push_back(gripper_jet(problem_->mold, v.segment<2>(2 * i), offset, unit_));
   return all;
 }
 
@@ -192,7 +197,8 @@ Eigen::VectorXd ReachNlp::constraint_values(const VectorRef& v) const {
   const double squared_length = free_links_ ? v[length_] : 1;
   for (size_t k = 0; k < links_.size(); ++k) {
     const auto [i, j] = links_[k];
-    c[int(k)] = 0.5 * ((all[size_t(j)].joint.value - all[size_t(i)].joint.value).squaredNorm() - squared_length);
+    c[int(k)] =
+        0.5 * ((all[size_t(j)].joint.value - all[size_t(i)].joint.value).squaredNorm() - squared_length);
   }
   if (fixed_ >= 0) c.segment<2>(fixed_row_) = all[size_t(fixed_)].joint.value.head<2>();
   for (int i = 0; tilt_limited_ && i < count_; ++i) c[tilt_row_ + i] = all[size_t(i)].normal.value.z();
@@ -229,7 +235,8 @@ Eigen::VectorXd ReachNlp::jacobian_values(const VectorRef& v) const {
   return values;
 }
 
-Eigen::VectorXd ReachNlp::hessian_values(const VectorRef& v, double sigma, const VectorRef& multipliers) const {
+Eigen::VectorXd ReachNlp::hessian_values(const VectorRef& v, double sigma,
+                                         const VectorRef& multipliers) const {
   const std::vector<GripperJet> all = jets(v);
   Eigen::VectorXd values = Eigen::VectorXd::Zero(int(hessian_pattern_.size()));
   const auto add = [&](int gripper, const auto& entry) {  // to the gripper's own block
@@ -263,13 +270,17 @@ Eigen::VectorXd ReachNlp::hessian_values(const VectorRef& v, double sigma, const
 }
 
 double ReachNlp::violation(const VectorRef& v) const {
-  if (rows_ == 0) return 0;
   const Eigen::VectorXd c = constraint_values(v);
   const Bounds bounds = constraint_bounds();
   if (!c.allFinite()) return kInfinity;
-  return std::max(0.0, std::max((bounds.lower - c).maxCoeff(), (c - bounds.upper).maxCoeff()));
+  double largest = 0;
+  for (int k = 0; k < rows_; ++k)
+    largest = std::max({largest, bounds.lower[k] - c[k], c[k] - bounds.upper[k]});
+  return largest;
 }
 
-double ReachNlp::link_scale(const VectorRef& v) const { return free_links_ ? std::sqrt(v[length_]) : 1; }
+double ReachNlp::link_scale(const VectorRef& v) const {
+  return free_links_ ? std::sqrt(v[length_]) : 1;
+}
 
 }  // namespace drapeplan

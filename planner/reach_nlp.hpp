@@ -32,9 +32,10 @@ enum class ReachGoal {
   max,  ///< largest squared distance, as an extra variable (epigraph form)
 };
 
-/// Lengths are in units of the spacing. Variables: x, y of each pad; then the squared largest distance (goal max);
-/// then the squared length of the interlinks (free links). Rows of the constraints: one per interlink, two for the
-/// fixed joint, one per gripper for its tilt (limits below 90 degrees), one per gripper for its distance (goal max).
+/// Lengths are in units of the spacing. Variables: x, y of each pad; then the squared largest distance (goal
+/// max); then the squared length of the interlinks (free links). Rows of the constraints: one per interlink,
+/// two for the fixed joint, one per gripper for its tilt (limits below 90 degrees), one per gripper for its
+/// distance (goal max).
 class ReachNlp {
  public:
   /// Places of nonzeros, (row, column). The Hessian's are those of its lower triangle.
@@ -64,7 +65,8 @@ class ReachNlp {
   [[nodiscard]] Eigen::VectorXd jacobian_values(const VectorRef& v) const;
   [[nodiscard]] const Pattern& hessian_pattern() const { return hessian_pattern_; }
   /// Of sigma * objective + multipliers . constraints.
-  [[nodiscard]] Eigen::VectorXd hessian_values(const VectorRef& v, double sigma, const VectorRef& multipliers) const;
+  [[nodiscard]] Eigen::VectorXd hessian_values(const VectorRef& v, double sigma,
+                                               const VectorRef& multipliers) const;
   /// Largest violation of a constraint [spacing, or squares of it; the tilt's in its cosine].
   [[nodiscard]] double violation(const VectorRef& v) const;
   /// Length of the interlinks over the spacing: 1 unless they are free.
@@ -81,8 +83,8 @@ class ReachNlp {
   int count_;
   double unit_;
   std::vector<std::array<int, 2>> links_;
-  int fixed_ = -1;                 ///< index of the fixed gripper
-  int level_ = -1, length_ = -1;   ///< places of the extra variables
+  int fixed_ = -1;                ///< index of the fixed gripper
+  int level_ = -1, length_ = -1;  ///< places of the extra variables
   int fixed_row_, tilt_row_, level_row_;
   int variables_, rows_;
   Pattern jacobian_pattern_, hessian_pattern_;
