@@ -113,7 +113,7 @@ Geodesic chord_step(const Mold& mold, const Eigen::Vector3d& from, const Eigen::
     if (std::abs(reached - chord) <= kTolerance) return line;
     arc *= chord / reached;
   }
-  throw_at("cells are too large for the mold's curvature at", from);
+  throw_at("the mold ends, or is too curved for the cells, beyond", from);
 }
 
 // A half line of nodes: indices first, first + stride, ... of the net.
@@ -129,10 +129,13 @@ void lay_half_line(const Mold& mold, const Eigen::Vector2d& direction, double ch
   }
 }
 
-// The free corner must lie across the diagonal from `base`: the mirrored solution folds the cell onto itself.
-bool is_folded(const Cell& cell, const Eigen::Vector3d& corner) {
-  return !((corner - cell.first).dot(cell.second - cell.base) > 0 &&
-           (corner - cell.second).dot(cell.first - cell.base) > 0);
+// True for the mirrored solution, which folds the cell over its diagonal, and for a cell sheared to a line,
+// where the two solutions meet and no fabric follows.
+bool is_collapsed(const Cell& cell, const Eigen::Vector3d& corner) {
+  constexpr double kSmallestSine = 0.01745;  // of the angle between the fibres: 1 degree, shear of 89 degrees
+  const Eigen::Vector3d normal = (cell.first - cell.base).cross(cell.second - cell.base).normalized();
+  const Eigen::Vector3d a = corner - cell.second, b = corner - cell.first;
+  return !(a.cross(b).dot(normal) > kSmallestSine * a.norm() * b.norm());
 }
 
 // Fills the quadrant that lies in the direction (di, dj) from the start node, element by element.
@@ -145,7 +148,8 @@ void fill_quadrant(const Mold& mold, int i0, int j0, int di, int dj, Net& net) {
                       std::abs(net.v[size_t(j)] - net.v[size_t(j - dj)])};
       const FreeCorner corner = place_free_corner(mold, cell);
       if (!corner.point.allFinite()) throw_at("the mold ends beyond", cell.base);
-      if (is_folded(cell, corner.point)) throw_at("the net folds onto itself beyond", cell.base);
+      if (is_collapsed(cell, corner.point))
+        throw_at("the net collapses, its shear reaches 90 degrees, beyond", cell.base);
       net.converged = net.converged && corner.converged;
       net.nodes[size_t(i) + size_t(j) * net.u.size()] = corner.point;
     }

@@ -340,10 +340,25 @@ TEST(Net, NamesThePlaceWhereTheMoldEnds) {
     }
     return "no error";
   };
-  EXPECT_NE(message({2, 0.1, {0, 0}, 0}, {0, 0}).find("the mold ends beyond (x, y) = (0.49"),
-            std::string::npos);
+  EXPECT_NE(message({2, 0.1, {0, 0}, 0}, {0, 0}).find("beyond (x, y) = (0.49"), std::string::npos);
   EXPECT_NE(message({0.1, 0.1, {0, 0}, 0}, {0.6, 0}).find("no mold at the start"), std::string::npos);
   EXPECT_NE(message({1.5, 1.5, {0, 0}, 0}, {0, 0}).find("beyond (x, y) = ("), std::string::npos);
+}
+
+TEST(Net, NamesThePlaceWhereItCollapses) {
+  const Extent extent{{-1, -1}, {1, 1}};
+  const Mold molds[] = {Mold(PolynomialShape{{{2, 0, -8}, {0, 2, -8}}}, extent),
+                        Mold(PolynomialShape{{{1, 1, 20}, {2, 0, -8}}}, extent)};
+  for (const Mold& mold : molds) {
+    for (const double cell_size : {0.05, 0.01}) {
+      try {
+        map_ply(mold, {0.8, 0.8, {0, 0}, 0}, {Generators::axes, {0.15, 0.15}, {0, 0}, cell_size});
+        ADD_FAILURE() << "no error";
+      } catch (const std::domain_error& error) {
+        EXPECT_NE(std::string(error.what()).find("the net collapses"), std::string::npos) << error.what();
+      }
+    }
+  }
 }
 
 TEST(Net, RefusesWhatCannotBeMapped) {
