@@ -252,8 +252,7 @@ std::string explain_causes(const ReachProblem& problem, const ReachResult& resul
   for (const Change& change : changes) {
     if (!(change.floor < result.floor_rms - kNegligible)) continue;
     text += " With " + change.what + " the r.m.s. floor would be " + millimetres(change.floor) + ".";
-    if (change.floor < 0.5 * result.floor_rms && (main == nullptr || change.floor < main->floor))
-      main = &change;
+    if (main == nullptr && change.floor < 0.5 * result.floor_rms) main = &change;
   }
   if (main != nullptr) text += " So " + main->cause + " causes most of it.";
   if (causes.longest_link > causes.shortest_link + kNegligible) {
@@ -261,6 +260,14 @@ std::string explain_causes(const ReachProblem& problem, const ReachResult& resul
             millimetres(causes.shortest_link) + " to " + millimetres(causes.longest_link) + ".";
   }
   return text;
+}
+
+/// Starts that disagree mean local minima, as of a folded trellis: the smallest one may not have been met.
+std::string explain_spread(const ReachResult& result) {
+  const double spread = std::max(result.start_spread, result.start_spread_max);
+  if (spread <= kNegligible) return "";
+  return " The starts of the search disagree by up to " + millimetres(spread) +
+         ": a lower floor may exist, try more starts.";
 }
 
 }  // namespace

@@ -473,13 +473,17 @@ TEST(Reach, TheExplanationNamesTheFloorTheWorstGripperAndTheCause) {
   RigOptions rig = grid(3, 1, 0.1, 0.02);
   rig.fixed = {2, 1};
   const ReachProblem problem = strip(rig, cylinder(kRadius), kRadius);
-  const std::string text = explain_reach(problem, solve_reach(problem));
+  ReachResult result = solve_reach(problem);
+  const std::string text = explain_reach(problem, result);
   EXPECT_NE(text.find(" mm (largest distance)"), std::string::npos) << text;
   EXPECT_TRUE(text.find("gripper (1, 1)") != std::string::npos ||
               text.find("gripper (3, 1)") != std::string::npos)
       << text;
   EXPECT_NE(text.find("joint offset causes most"), std::string::npos) << text;
   EXPECT_NE(text.find("instead of 100.0 mm"), std::string::npos) << text;
+  EXPECT_EQ(text.find("disagree"), std::string::npos) << text;
+  result.start_spread = 0.004;
+  EXPECT_NE(explain_reach(problem, result).find("disagree by up to 4.0 mm"), std::string::npos);
 }
 
 }  // namespace
