@@ -18,9 +18,12 @@ using Places = std::vector<Eigen::Vector2d>;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSatisfied = 1e-12;     // [spacing]: targets that keep all constraints to round-off
 constexpr double kLinkTolerance = 1e-6;  // [m]: a solution that misses more than this is none
-constexpr double kPerturbation = 0.2;    // [spacing]: largest shift of a pad, per axis, for a random start
-constexpr double kNegligible = 1e-4;     // [m]: finer than a ply is ever placed
-constexpr double kSameFloor = 1e-6;      // [m]: floors that differ by less are the same local solution
+// [spacing]: largest shift of a pad, per axis, for a random start. Where neighbours change sides the trellis
+// folds over itself: local minima of their own, with floors ten times as large. Shifts of 0.5 lead to such
+// ones.
+constexpr double kPerturbation = 0.15;
+constexpr double kNegligible = 1e-4;  // [m]: finer than a ply is ever placed
+constexpr double kSameFloor = 1e-6;   // [m]: floors that differ by less are the same local solution
 
 /// Best of several local solutions.
 struct Best {
@@ -143,6 +146,13 @@ ReachCauses find_causes(const ReachProblem& problem, const Places& solution) {
   const std::vector<Places> from{target_places(problem), solution};
   ReachCauses causes;
 
+  const std::vector<Eigen::Vector3d> ideal = joints_at(problem, from.front());
+  for (const auto& [i, j] : interlinks(problem.rig)) {
+    const double length = (ideal[size_t(j)] - ideal[size_t(i)]).norm();
+    causes.shortest_link = causes.longest_link == 0 ? length : std::min(causes.shortest_link, length);
+    causes.longest_link = std::max(causes.longest_link, length);
+  }
+
   ReachProblem flush = problem;
   flush.rig.joint_offset = flush.ply_thickness = 0;
   causes.rms_flush = best_of(flush, ReachNlp(flush, ReachGoal::rms), from).value;
@@ -169,7 +179,7 @@ bool targets_are_reachable(const ReachProblem& problem) {
 ReachResult without_floors(ReachResult result, const std::string& why) {
   result.status = why;
   result.floor_rms = result.floor_max = kNaN;
-  result.causes = {kNaN, kNaN, kNaN, kNaN, kNaN};
+  result.causes = {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
   return result;
 }
 
@@ -188,7 +198,13 @@ ReachResult find_floors(const ReachProblem& problem, int random_starts, unsigned
   const Best least_squares = best_of(problem, rms, from);
   const Places solution = rms.places_at(least_squares.outcome.variables);
   set_positions(problem, solution, result);
-  if (least_squares.solved == 0) return without_floors(result, least_squares.outcome.status);
+  if (least_squares.solved == 0) {
+    const bool feasible =
+        rms.violation(least_squares.outcome.variables) * problem.rig.spacing <= kLinkTolerance;
+    return without_floors(result, feasible ? "the rig fits the mold, but the search ended early" +
+                                                 std::string(" (") + least_squares.outcome.status + ")"
+                                           : least_squares.outcome.status);
+  }
 
   from.push_back(solution);
   const Best minimax = best_of(problem, max, from);
@@ -214,38 +230,44 @@ std::string millimetres(double length) {
   return text;
 }
 
-/// What remains of the floor without joint offset, without the fixed joint and with the best interlink
-/// length.
+/// What remains of the floor without joint offset, without the fixed joint or with the best interlink length,
+/// and which of the three is the main cause: the first without which less than half is left.
 std::string explain_causes(const ReachProblem& problem, const ReachResult& result) {
-  const ReachCauses& causes = result.causes;
-  const double offset = problem.rig.joint_offset + problem.ply_thickness;
-  std::string text;
-  const auto consider = [&](double floor, const std::string& change) {
-    if (!std::isfinite(floor)) return;
-    text += " " + change + " the r.m.s. floor would be " + millimetres(floor) + ".";
+  struct Change {
+    double floor;
+    std::string what, cause;
   };
-  if (offset > 0) {
-    consider(causes.rms_flush,
-             "With joints at the mold's surface instead of " + millimetres(offset) + " above it");
-    if (causes.rms_flush < 0.5 * result.floor_rms) {
-      text += " So the joint offset causes most of it.";
-    } else if (causes.rms_flush >= result.floor_rms - kNegligible) {
-      text +=
-          " So the joint offset is not the cause: straight interlinks span the mold where the fabric follows "
-          "it.";
-    } else {
-      text += " The rest is due to straight interlinks that span the mold where the fabric follows it.";
-    }
+  const ReachCauses& causes = result.causes;
+  const double offset = problem.rig.joint_offset + problem.ply_thickness, spacing = problem.rig.spacing;
+  const std::vector<Change> changes{
+      {causes.rms_flush, "joints at the mold's surface instead of " + millimetres(offset) + " above it",
+       "the joint offset"},
+      {causes.rms_unfixed, "no joint fixed in-plane", "the fixed joint"},
+      {causes.rms_rescaled,
+       "interlinks of " + millimetres(causes.link_scale * spacing) + " instead of " + millimetres(spacing),
+       "the length of the interlinks"},
+  };
+  const Change* main = nullptr;
+  std::string text;
+  for (const Change& change : changes) {
+    if (!(change.floor < result.floor_rms - kNegligible)) continue;
+    text += " With " + change.what + " the r.m.s. floor would be " + millimetres(change.floor) + ".";
+    if (main == nullptr && change.floor < 0.5 * result.floor_rms) main = &change;
   }
-  if (problem.rig.fixed && causes.rms_unfixed < result.floor_rms - kNegligible) {
-    consider(causes.rms_unfixed, "With no joint fixed in-plane");
-  }
-  if (causes.rms_rescaled < result.floor_rms - kNegligible) {
-    consider(causes.rms_rescaled, "With interlinks of " +
-                                      millimetres(causes.link_scale * problem.rig.spacing) + " instead of " +
-                                      millimetres(problem.rig.spacing));
+  if (main != nullptr) text += " So " + main->cause + " causes most of it.";
+  if (causes.longest_link > causes.shortest_link + kNegligible) {
+    text += " All targets could be met only by interlinks of different lengths, " +
+            millimetres(causes.shortest_link) + " to " + millimetres(causes.longest_link) + ".";
   }
   return text;
+}
+
+/// Starts that disagree mean local minima, as of a folded trellis: the smallest one may not have been met.
+std::string explain_spread(const ReachResult& result) {
+  const double spread = std::max(result.start_spread, result.start_spread_max);
+  if (spread <= kNegligible) return "";
+  return " The starts of the search disagree by up to " + millimetres(spread) +
+         ": a lower floor may exist, try more starts.";
 }
 
 }  // namespace
@@ -259,7 +281,7 @@ ReachResult solve_reach(const ReachProblem& problem, int random_starts, unsigned
 
 std::string explain_reach(const ReachProblem& problem, const ReachResult& result) {
   if (!result.converged) {
-    std::string text = "No position of the rig with all pads on the mold was found: " + result.status + ".";
+    std::string text = "The floor of the rig was not found: " + result.status + ".";
     if (result.link_violation > kLinkTolerance) {
       text += " At best an interlink's length is off by " + millimetres(result.link_violation) + ".";
     }
@@ -267,9 +289,9 @@ std::string explain_reach(const ReachProblem& problem, const ReachResult& result
   }
   if (result.floor_max <= kNegligible) return "The rig can put every pad on its target.";
   const auto worst = std::max_element(result.per_gripper.begin(), result.per_gripper.end());
-  return "No schedule can bring every pad closer to its target than " + millimetres(result.floor_max) +
-         " (largest distance), nor below " + millimetres(result.floor_rms) +
-         " r.m.s.: the rig's geometry does not allow more. In the best r.m.s. position gripper " +
+  return "With its pads on the mold the rig cannot bring every one closer to its target than " +
+         millimetres(result.floor_max) + " (largest distance), nor below " + millimetres(result.floor_rms) +
+         " r.m.s., whatever the schedule. In the best r.m.s. position gripper " +
          gripper_name(problem.rig, int(worst - result.per_gripper.begin())) + " is farthest off, by " +
          millimetres(*worst) + "." + explain_causes(problem, result);
 }

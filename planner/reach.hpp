@@ -30,6 +30,8 @@ struct ReachCauses {
   double rms_unfixed = 0;   ///< floor_rms if no joint were fixed in-plane [m]
   double rms_rescaled = 0;  ///< floor_rms if all interlinks had the best common length [m]
   double link_scale = 1;    ///< that length over the spacing
+  double shortest_link = 0,
+         longest_link = 0;  ///< of the interlinks that would put every pad on its target [m]
 };
 
 /// Floors (and causes) are NaN where no solution was found; positions then are those that break the rig's

@@ -110,9 +110,9 @@ std::string in_words(Ipopt::ApplicationReturnStatus status) {
     case Ipopt::Solved_To_Acceptable_Level:
       return "solved to a looser tolerance only";
     case Ipopt::Infeasible_Problem_Detected:
-      return "no position keeps all constraints (locally infeasible)";
+      return "no position with all pads on the mold keeps the interlinks' lengths";
     case Ipopt::Restoration_Failed:
-      return "no position that keeps all constraints was found (restoration failed)";
+      return "the search for a position that keeps all constraints failed";
     case Ipopt::Maximum_Iterations_Exceeded:
       return "iteration limit reached";
     case Ipopt::Maximum_CpuTime_Exceeded:

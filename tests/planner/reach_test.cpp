@@ -9,6 +9,7 @@
 #include <random>
 #include <thread>
 
+#include "mapping/net.hpp"
 #include "planner/reach_ipopt.hpp"
 #include "planner/reach_nlp.hpp"
 
@@ -355,6 +356,32 @@ TEST(Reach, TheSolutionTurnsWithTheScene) {
   EXPECT_LE(std::abs(a.floor_max - b.floor_max), 1e-8);
 }
 
+// With the targets of the energy mapping. The rig without offset nearly fits the mold, as its interlinks are
+// chords of the fabric; the offset alone spoils it, and in proportion: joint distances change by offset times
+// curvature.
+TEST(Reach, TheSeedsFloorGrowsInProportionToTheJointOffset) {
+  ReachProblem problem = seed_problem();
+  const Ply ply{0.405, 0.405, problem.fixed_place, 0};
+  MappingOptions options;
+  options.start = problem.fixed_place;
+  const Net net = map_ply(problem.mold, ply, options);
+  for (int k = 0; k < 25; ++k)
+    problem.targets[size_t(k)] = mapped_point(net, problem.mold, problem.rig.place(k));
+
+  std::vector<ReachResult> results;
+  for (const double offset : {0.0, 0.005, 0.010, 0.020}) {
+    problem.rig.joint_offset = offset;
+    results.push_back(solve_reach(problem));
+    ASSERT_TRUE(results.back().converged) << results.back().status;
+    EXPECT_LE(results.back().link_violation, kLinkTolerance);
+  }
+  EXPECT_LE(results[0].floor_max, 0.002);
+  EXPECT_LE(std::abs(results[1].floor_max - 0.0046),
+            0.0003);  // found: 4.61 mm; the targets move with the mapping
+  EXPECT_LE(std::abs(results[3].floor_rms / results[2].floor_rms - 2), 0.1);
+  EXPECT_LE(std::abs(results[2].floor_rms / results[1].floor_rms - 2), 0.15);
+}
+
 // Second-order sufficient condition: the Lagrangian's Hessian is positive on the null space of the Jacobian.
 TEST(Reach, TheBestPositionOnTheSeedsMoldIsAStrictMinimum) {
   ReachProblem problem = seed_problem();
@@ -402,7 +429,7 @@ TEST(Reach, InterlinksLongerThanTheSphereAreReportedAsInfeasible) {
   EXPECT_FALSE(result.status.empty());
   EXPECT_TRUE(std::isnan(result.floor_rms) && std::isnan(result.floor_max));
   EXPECT_GT(result.link_violation, 0.5);
-  EXPECT_NE(explain_reach(problem, result).find("No position"), std::string::npos);
+  EXPECT_NE(explain_reach(problem, result).find("not found: no position"), std::string::npos);
 }
 
 TEST(Reach, UnsoundInputIsAStatus) {
@@ -446,13 +473,17 @@ TEST(Reach, TheExplanationNamesTheFloorTheWorstGripperAndTheCause) {
   RigOptions rig = grid(3, 1, 0.1, 0.02);
   rig.fixed = {2, 1};
   const ReachProblem problem = strip(rig, cylinder(kRadius), kRadius);
-  const std::string text = explain_reach(problem, solve_reach(problem));
+  ReachResult result = solve_reach(problem);
+  const std::string text = explain_reach(problem, result);
   EXPECT_NE(text.find(" mm (largest distance)"), std::string::npos) << text;
   EXPECT_TRUE(text.find("gripper (1, 1)") != std::string::npos ||
               text.find("gripper (3, 1)") != std::string::npos)
       << text;
   EXPECT_NE(text.find("joint offset causes most"), std::string::npos) << text;
   EXPECT_NE(text.find("instead of 100.0 mm"), std::string::npos) << text;
+  EXPECT_EQ(text.find("disagree"), std::string::npos) << text;
+  result.start_spread = 0.004;
+  EXPECT_NE(explain_reach(problem, result).find("disagree by up to 4.0 mm"), std::string::npos);
 }
 
 }  // namespace
