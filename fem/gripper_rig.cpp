@@ -11,6 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kServoDamping = 1;          // damping ratio of a joint on its actuator: a servo does not ring
+constexpr double kRimSlack = 1e-9;           // nodes on the rim belong to the pad, whatever the round-off
 constexpr double kConstraintTolerance = 1e-12;  // of the grippers' spacing
 constexpr int kConstraintIterations = 20;
 
@@ -39,7 +40,7 @@ GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>
     double spread = 0;
     for (size_t n = 0; n < rest.size(); ++n) {
       const Eigen::Vector2d offset = rest[n] - rig.place(g);
-      if (offset.norm() > rig.pad_radius) continue;
+      if (offset.norm() > rig.pad_radius * (1 + kRimSlack)) continue;
       if (taken[n]) throw std::invalid_argument(gripper_name(rig, g) + " shares a ply node with another gripper");
       taken[n] = 1;
       tied_.push_back(int(n));

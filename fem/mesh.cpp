@@ -5,15 +5,41 @@
 
 namespace drapeplan {
 
-Mesh rectangle_mesh(double width, double height, double mesh_size) {
-  if (!(width > 0 && height > 0 && mesh_size > 0)) throw std::invalid_argument("rectangle_mesh: lengths must be positive");
+namespace {
+
+/// Appends equal cells from the last line to `end`.
+void divide(std::vector<double>& lines, double end, double mesh_size) {
   constexpr double kSlack = 1e-9;  // so that 100 mm / 10 mm gives 10 cells, not 11
-  const int nx = std::max(1, int(std::ceil(width / mesh_size - kSlack)));
-  const int ny = std::max(1, int(std::ceil(height / mesh_size - kSlack)));
+  const double start = lines.back();
+  const int cells = std::max(1, int(std::ceil((end - start) / mesh_size - kSlack)));
+  for (int k = 1; k <= cells; ++k) lines.push_back(k == cells ? end : start + (end - start) * k / cells);
+}
+
+/// Mesh lines over [-length/2, length/2] through `places`.
+std::vector<double> mesh_lines(double length, double mesh_size, const std::vector<double>& places) {
+  std::vector<double> lines{-0.5 * length};
+  for (const double place : places) divide(lines, place, mesh_size);
+  divide(lines, 0.5 * length, mesh_size);
+  if (places.empty()) return lines;
+  if (lines.size() > 3 && lines[1] - lines[0] < 0.5 * (lines[2] - lines[1])) lines.erase(lines.begin() + 1);
+  const size_t last = lines.size() - 1;
+  if (last > 2 && lines[last] - lines[last - 1] < 0.5 * (lines[last - 1] - lines[last - 2])) lines.erase(lines.end() - 2);
+  return lines;
+}
+
+}  // namespace
+
+Mesh rectangle_mesh(double width, double height, double mesh_size) { return rectangle_mesh(width, height, mesh_size, {}, {}); }
+
+Mesh rectangle_mesh(double width, double height, double mesh_size, const std::vector<double>& u,
+                    const std::vector<double>& v) {
+  if (!(width > 0 && height > 0 && mesh_size > 0)) throw std::invalid_argument("rectangle_mesh: lengths must be positive");
+  const std::vector<double> x = mesh_lines(width, mesh_size, u), y = mesh_lines(height, mesh_size, v);
+  const int nx = int(x.size()) - 1, ny = int(y.size()) - 1;
   const auto node = [nx](int i, int j) { return i + j * (nx + 1); };
   Mesh mesh;
-  for (int j = 0; j <= ny; ++j) {
-    for (int i = 0; i <= nx; ++i) mesh.rest.emplace_back(width * (double(i) / nx - 0.5), height * (double(j) / ny - 0.5));
+  for (const double yj : y) {
+    for (const double xi : x) mesh.rest.emplace_back(xi, yj);
   }
   for (int j = 0; j < ny; ++j) {
     for (int i = 0; i < nx; ++i) mesh.quads.push_back({node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)});

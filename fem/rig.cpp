@@ -2,6 +2,18 @@
 
 namespace drapeplan {
 
+std::vector<double> column_places(const RigOptions& rig) {
+  std::vector<double> places;
+  for (int i = 0; i < rig.columns; ++i) places.push_back(rig.place(i).x());
+  return places;
+}
+
+std::vector<double> row_places(const RigOptions& rig) {
+  std::vector<double> places;
+  for (int j = 0; j < rig.rows; ++j) places.push_back(rig.place(j * rig.columns).y());
+  return places;
+}
+
 std::vector<std::array<int, 2>> interlinks(const RigOptions& rig) {
   std::vector<std::array<int, 2>> pairs;
   if (!rig.interlinks) return pairs;

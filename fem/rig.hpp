@@ -33,6 +33,10 @@ struct RigOptions {
   }
 };
 
+/// Columns' places along u and rows' places along v [m], increasing.
+std::vector<double> column_places(const RigOptions& rig);
+std::vector<double> row_places(const RigOptions& rig);
+
 /// Pairs of neighbouring grippers (indices), each joined by an interlink; warp direction first, in fixed order.
 std::vector<std::array<int, 2>> interlinks(const RigOptions& rig);
 

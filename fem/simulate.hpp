@@ -14,7 +14,7 @@ struct RunRequest {
   const Schedule* schedule = nullptr;  ///< needed with a rig: all joints start at the same height
   double duration = 0;                 ///< of the schedule's clock; 0: until the schedule ends [s]
   int frames = 0;                      ///< snapshots handed to `observe`, equally spaced in time, the start included
-  std::function<void(const Snapshot&)> observe;
+  std::function<void(const Snapshot&)> observe = nullptr;
 };
 
 struct RunResult {

@@ -1,0 +1,172 @@
+// Whole runs of small scenes: books, conservation, determinism, divergence as a result.
+#include "fem/simulate.hpp"
+
+#include <gtest/gtest.h>
+
+#include "fem/workspace.hpp"
+#include "tests/fem/scenes.hpp"
+
+namespace drapeplan {
+namespace {
+
+using test::get;
+
+/// 3x3 rig on the middle of the seed's mold, coarse and fast.
+Scene small_drape() {
+  Scene scene;
+  scene.mesh = rectangle_mesh(0.22, 0.22, 0.0138);
+  scene.fabric = test::woven_fabric();
+  scene.options.mass_scaling = 50;
+  scene.options.time_scaling = 20;
+  scene.position = {0.225, 0.225};
+  scene.gravity = 9.81;
+  scene.damping = 22;
+  scene.mold = test::seed_mold();
+  scene.friction = 1.5;
+  RigOptions rig;
+  rig.columns = rig.rows = 3;
+  rig.spacing = 0.1;
+  rig.fixed = {2, 2};
+  scene.rig = rig;
+  return scene;
+}
+
+Schedule drop(const Scene& scene) {
+  Schedule schedule;
+  schedule.blend_time = 0.1;
+  double top = -1;
+  std::vector<double> z;
+  for (int g = 0; g < scene.rig->count(); ++g) {
+    const Eigen::Vector2d xy = scene.position + scene.rig->place(g);
+    z.push_back(scene.mold->height(xy.x(), xy.y()) + scene.rig->joint_offset);
+    top = std::max(top, z.back());
+  }
+  for (const double end : z) schedule.paths.push_back({{0, top + 0.02}, {2, end + 0.02}, {5, end}, {6, end}});
+  return schedule;
+}
+
+TEST(Simulate, ClosesItsBooksToRoundOffInADrape) {
+  const Scene scene = small_drape();
+  const Schedule schedule = drop(scene);
+  const RunResult result = simulate(Model(scene), {.schedule = &schedule});
+  EXPECT_EQ(result.report.status, RunStatus::done) << result.report.message;
+  EXPECT_LE(result.report.energy.balance_error, 1e-9);
+  EXPECT_GT(result.report.energy.friction, 0);
+  EXPECT_GT(result.report.energy.damping, 0);
+  EXPECT_GT(result.report.energy.internal, 0);
+  EXPECT_LE(result.largest_fibre_strain, 0.02);
+  EXPECT_LE(result.report.largest_link_error, 1e-7);
+}
+
+TEST(Simulate, GivesTheSameBitsTwice) {
+  const Scene scene = small_drape();
+  const Schedule schedule = drop(scene);
+  const Model model(scene);
+  const auto first = simulate(model, {.schedule = &schedule}).report.state_hash;
+  EXPECT_EQ(first, simulate(model, {.schedule = &schedule}).report.state_hash);
+  EXPECT_EQ(first, simulate(Model(scene), {.schedule = &schedule}).report.state_hash);
+}
+
+TEST(Simulate, ReportsDivergenceAsAResultWithItsPlace) {
+  Scene scene = small_drape();
+  scene.options.step_safety = 4;
+  const Schedule schedule = drop(scene);
+  const RunResult result = simulate(Model(scene), {.schedule = &schedule});
+  EXPECT_EQ(result.report.status, RunStatus::diverged);
+  EXPECT_NE(result.report.message.find("not finite"), std::string::npos) << result.report.message;
+}
+
+TEST(Simulate, ListsOnlyTheTermsThatTheSceneNeeds) {
+  Scene strip;
+  strip.mesh = rectangle_mesh(0.1, 0.02, 0.01);
+  strip.fabric = test::woven_fabric();
+  EXPECT_EQ(Model(strip).term_names(), std::vector<std::string>{"shell"});
+  EXPECT_TRUE(Model(strip).flat_state(0).anchor.x.empty());
+  strip.gravity = 9.81;
+  EXPECT_EQ(Model(strip).term_names(), (std::vector<std::string>{"shell", "gravity"}));
+}
+
+TEST(Simulate, RefusesAPadWithoutNodesAndAScheduleOfAnotherRig) {
+  Scene scene = small_drape();
+  const Schedule schedule = drop(scene);
+  scene.rig->columns = scene.rig->rows = 2;
+  scene.rig->fixed.reset();
+  const Model model(scene);
+  EXPECT_THROW(simulate(model, {.schedule = &schedule}), std::invalid_argument);
+  scene.rig->pad_radius = 1e-4;
+  EXPECT_THROW(Model{scene}, std::invalid_argument);
+}
+
+TEST(Simulate, ConservesMomentumInFreeFlight) {
+  Scene scene;
+  scene.mesh = rectangle_mesh(0.1, 0.1, 0.02);
+  scene.fabric = test::woven_fabric();
+  const Model model(scene);
+  State state = model.flat_state(0);
+  const auto nodes = size_t(model.node_count());
+  for (size_t n = 0; n < nodes; ++n) {  // a spin about a slanted axis, and a stretch
+    const Eigen::Vector3d x = get(state.x, n), spin(1, 2, 5);
+    test::put(state.v, n, spin.cross(x) + Eigen::Vector3d(0.3, 0.2, 0.1) + 0.5 * Eigen::Vector3d(x.x(), 0, 0));
+    test::put(state.w, n, spin.cross(Eigen::Vector3d::UnitZ()));
+  }
+  const auto momenta = [&] {
+    Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
+    for (size_t n = 0; n < nodes; ++n) {
+      linear += model.mass()[n] * get(state.v, n);
+      // Velocities belong to t - dt/2; drifting with them back by half a step changes no x cross v.
+      angular += model.mass()[n] * get(state.x, n).cross(get(state.v, n)) +
+                 model.inertia()[n] * get(state.d, n).cross(get(state.w, n));
+    }
+    return std::pair{linear, angular};
+  };
+  const auto [linear, angular] = momenta();
+  Workspace work(model);
+  for (int k = 0; k < 20000; ++k) {
+    compute_forces(model, state, work);
+    kick_nodes(model, state, work);
+    drift_nodes(model, state);
+  }
+  const auto [linear_end, angular_end] = momenta();
+  EXPECT_LE((linear_end - linear).norm(), 1e-12 * linear.norm());
+  EXPECT_LE((angular_end - angular).norm(), 1e-9 * angular.norm());
+}
+
+// Booked elastic work against stored energy: a second check of the books, of second order in the step.
+TEST(Simulate, BooksElasticWorkThatApproachesTheStoredEnergyWithSecondOrder) {
+  std::vector<double> error;
+  for (const double safety : {0.8, 0.4, 0.2}) {
+    Scene scene;
+    scene.mesh = rectangle_mesh(0.1, 0.02, 0.01);
+    scene.fabric = test::linear_fabric(1e9, 1e8, 1e8);
+    scene.options.mass_scaling = 1;
+    scene.options.step_safety = safety;
+    scene.gravity = 9.81;
+    for (int n = 0; n < scene.mesh.node_count(); ++n) {
+      if (scene.mesh.rest[size_t(n)].x() < -0.0499) scene.clamped.push_back(n);
+    }
+    const Model model(scene);
+    State state = model.flat_state(0);
+    Workspace work(model);
+    double largest = 0, stored = 0;
+    for (double t = 0; t < 0.05; t += model.dt()) {
+      compute_forces(model, state, work);
+      kick_nodes(model, state, work);
+      book_work(model, state, work);
+      drift_nodes(model, state);
+      const ShellEnergy e = model.shell().stored_energy(state);
+      stored = std::max(stored, e.fabric);
+      largest = std::max(largest, std::abs(-state.work[size_t(Book::internal)] - e.fabric - e.hourglass));
+    }
+    error.push_back(largest / stored);
+  }
+  EXPECT_LE(error[0], 0.05);
+  for (size_t k = 1; k < error.size(); ++k) {
+    // Books end half a step before the positions at which energy is stored: first order while it moves.
+    const double slope = std::log2(error[k - 1] / error[k]);
+    EXPECT_GE(slope, 0.8);
+    EXPECT_LE(slope, 2.5);
+  }
+}
+
+}  // namespace
+}  // namespace drapeplan
