@@ -293,7 +293,7 @@ std::string explain_reach(const ReachProblem& problem, const ReachResult& result
          millimetres(result.floor_max) + " (largest distance), nor below " + millimetres(result.floor_rms) +
          " r.m.s., whatever the schedule. In the best r.m.s. position gripper " +
          gripper_name(problem.rig, int(worst - result.per_gripper.begin())) + " is farthest off, by " +
-         millimetres(*worst) + "." + explain_causes(problem, result);
+         millimetres(*worst) + "." + explain_causes(problem, result) + explain_spread(result);
 }
 
 }  // namespace drapeplan
