@@ -23,11 +23,19 @@ std::array<int, 2> name_of(size_t gripper, const RigOptions& rig) {
 }
 
 void check_fits(const Schedule& schedule, const RigOptions& rig) {
-  const bool empty_path =
-      std::any_of(schedule.paths.begin(), schedule.paths.end(), [](const auto& path) { return path.empty(); });
+  const bool empty_path = std::any_of(schedule.paths.begin(), schedule.paths.end(),
+                                      [](const auto& path) { return path.empty(); });
   if (int(schedule.paths.size()) == rig.count() && !empty_path) return;
-  throw std::invalid_argument("a schedule of " + std::to_string(schedule.paths.size()) + " paths for a rig of " +
-                              std::to_string(rig.count()) + " grippers" + (empty_path ? ", one without knots" : ""));
+  throw std::invalid_argument("a schedule of " + std::to_string(schedule.paths.size()) +
+                              " paths for a rig of " + std::to_string(rig.count()) + " grippers" +
+                              (empty_path ? ", one without knots" : ""));
+}
+
+/// As `exact`, but always a floating-point number to a JSON reader: an integer "-0" would lose its sign.
+std::string json_number(double value) {
+  if (!std::isfinite(value)) throw std::invalid_argument("a schedule holds a number that is not finite");
+  const std::string text = exact(value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
 /// Reads one file and keeps its errors.
@@ -102,14 +110,16 @@ class Reader {
       return;
     }
     reading_.value.blend_time = number(root, "", "blend_time");
-    if (reading_.value.blend_time < 0) error("/blend_time", exact(reading_.value.blend_time) + ": must not be < 0");
+    if (reading_.value.blend_time < 0)
+      error("/blend_time", exact(reading_.value.blend_time) + ": must not be < 0");
     if (!root.contains("grippers") || !root.at("grippers").is_array()) {
       error("/grippers", "expected a list with one entry per gripper");
       return;
     }
     reading_.value.paths.resize(size_t(rig_.count()));
     size_t entry = 0;
-    for (const Json& gripper : root.at("grippers")) read_gripper(gripper, "/grippers/" + std::to_string(entry++));
+    for (const Json& gripper : root.at("grippers"))
+      read_gripper(gripper, "/grippers/" + std::to_string(entry++));
     report_missing();
   }
 
@@ -141,8 +151,8 @@ class Reader {
     const std::string allowed = "; expected [i, j] from [1, 1] to [" + std::to_string(rig_.columns) + ", " +
                                 std::to_string(rig_.rows) + "]";
     const Json name = value.contains("gripper") ? value.at("gripper") : Json();
-    const bool pair = name.is_array() && name.size() == 2 && name[0].is_number_integer() &&
-                      name[1].is_number_integer();
+    const bool pair =
+        name.is_array() && name.size() == 2 && name[0].is_number_integer() && name[1].is_number_integer();
     const auto within = [](const Json& number, int count) {
       return number.get<double>() >= 1 && number.get<double>() <= count;  // as double: no overflow of int
     };
@@ -161,10 +171,11 @@ class Reader {
       return;
     }
     const Knot knot{number(value, path, "time"), number(value, path, "z")};
-    if (knots.empty() && knot.time != 0) error(path + "/time", exact(knot.time) + ": the first knot is at time 0");
+    if (knots.empty() && knot.time != 0)
+      error(path + "/time", exact(knot.time) + ": the first knot is at time 0");
     if (!knots.empty() && !(knot.time > knots.back().time)) {
-      error(path + "/time", exact(knot.time) + ": times must increase; the knot before is at " +
-                                exact(knots.back().time));
+      error(path + "/time",
+            exact(knot.time) + ": times must increase; the knot before is at " + exact(knots.back().time));
     }
     knots.push_back(knot);
   }
@@ -199,14 +210,15 @@ std::vector<double> sample_times(const Schedule& schedule, const std::vector<Kno
 void write_schedule(const std::filesystem::path& file, const Schedule& schedule, const RigOptions& rig) {
   check_fits(schedule, rig);
   // Written by hand, one gripper per line: a person can read and edit it.
-  std::string text = "{\n  \"format\": \"" + std::string(kScheduleFormat) + "\",\n  \"blend_time\": " +
-                     exact(schedule.blend_time) + ",\n  \"grippers\": [\n";
+  std::string text = "{\n  \"format\": \"" + std::string(kScheduleFormat) +
+                     "\",\n  \"blend_time\": " + json_number(schedule.blend_time) + ",\n  \"grippers\": [\n";
   for (size_t g = 0; g < schedule.paths.size(); ++g) {
     const auto [i, j] = name_of(g, rig);
     text += "    {\"gripper\": [" + std::to_string(i) + ", " + std::to_string(j) + "], \"knots\": [";
     for (size_t k = 0; k < schedule.paths[g].size(); ++k) {
       const Knot& knot = schedule.paths[g][k];
-      text += std::string(k > 0 ? ", " : "") + "{\"time\": " + exact(knot.time) + ", \"z\": " + exact(knot.z) + "}";
+      text += std::string(k > 0 ? ", " : "") + "{\"time\": " + json_number(knot.time) +
+              ", \"z\": " + json_number(knot.z) + "}";
     }
     text += g + 1 < schedule.paths.size() ? "]},\n" : "]}\n";
   }
@@ -220,7 +232,8 @@ ScheduleReading read_schedule(const std::filesystem::path& file, const RigOption
 void write_schedule_csv(const std::filesystem::path& file, const Schedule& schedule, const RigOptions& rig,
                         double rate) {
   check_fits(schedule, rig);
-  if (!(rate > 0)) throw std::invalid_argument("write_schedule_csv: the rate must be > 0, it is " + exact(rate));
+  if (!(rate > 0))
+    throw std::invalid_argument("write_schedule_csv: the rate must be > 0, it is " + exact(rate));
   std::string text = "gripper_i,gripper_j,time_s,z_m,vz_m_per_s\n";
   for (size_t g = 0; g < schedule.paths.size(); ++g) {
     const auto [i, j] = name_of(g, rig);

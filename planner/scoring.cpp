@@ -16,11 +16,11 @@ using Points = std::vector<Eigen::Vector3d>;
 
 /// A mold flatter than a radius of 10 m hides no gap of interest: 0.1 mm below a chord of 100 mm.
 constexpr double kHollowCurvature = 0.1;  // [1/m]
-/// A fibre counts as taut above this strain: some N/m in carbon fabric, what a span of 100 mm needs to carry its
-/// own weight at 1 mm of sag.
+/// A fibre counts as taut above this strain: some N/m in carbon fabric, what a span of 100 mm needs to carry
+/// its own weight at 1 mm of sag.
 constexpr double kTautStrain = 1e-5;  // [-]
-/// The distance from a polyline changes by at most 1 m per m along the other one, so this bounds the error of the
-/// largest offset by half of it.
+/// The distance from a polyline changes by at most 1 m per m along the other one, so this bounds the error of
+/// the largest offset by half of it.
 constexpr double kEdgeSample = 0.0005;  // [m]
 /// Reference of the wrinkled area: this share of the ply's area.
 constexpr double kWrinkledShare = 0.01;  // [-]
@@ -36,7 +36,7 @@ double gap(const Mold& mold, const Eigen::Vector3d& place, double thickness) {
 
 /// Means over the elements around each node.
 struct NodalFibres {
-  std::vector<Eigen::Vector2d> warp, weft;        ///< sums of the deformed directions, seen from above; any length
+  std::vector<Eigen::Vector2d> warp, weft;  ///< sums of the deformed directions, seen from above; any length
   std::vector<double> warp_strain, weft_strain;  ///< means [-]
 };
 
@@ -46,7 +46,8 @@ NodalFibres nodal_fibres(const Mesh& mesh, const Snapshot& end) {
                      std::vector<double>(n, 0.0), std::vector<double>(n, 0.0)};
   std::vector<int> around(n, 0);
   for (size_t e = 0; e < mesh.quads.size(); ++e) {
-    // The mean deformation gradient of the element, from its diagonals: F maps u, v of the rest shape to x, y.
+    // The mean deformation gradient of the element, from its diagonals: F maps u, v of the rest shape to x,
+    // y.
     const auto& quad = mesh.quads[e];
     Eigen::Matrix2d rest, now;
     for (int d = 0; d < 2; ++d) {
@@ -72,7 +73,8 @@ NodalFibres nodal_fibres(const Mesh& mesh, const Snapshot& end) {
   return fibres;
 }
 
-Eigen::Vector3d nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+Eigen::Vector3d nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                   const Eigen::Vector3d& b) {
   const Eigen::Vector3d ab = b - a;
   const double length2 = ab.squaredNorm();
   const double along = length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
@@ -145,12 +147,18 @@ std::optional<std::string> not_finite(const Snapshot& end, const RunExtremes& ru
            points.begin();
   };
   const auto bad_number = [](const std::vector<double>& values) {
-    return std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }) - values.begin();
+    return std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }) -
+           values.begin();
   };
-  const auto name = [](const char* what, auto place) { return std::string(what) + " " + std::to_string(place); };
-  if (const auto k = bad_point(end.position); size_t(k) < end.position.size()) return name("position of node", k);
-  if (const auto k = bad_point(end.director); size_t(k) < end.director.size()) return name("director of node", k);
-  if (const auto k = bad_point(boundary); size_t(k) < boundary.size()) return name("prescribed boundary, point", k);
+  const auto name = [](const char* what, auto place) {
+    return std::string(what) + " " + std::to_string(place);
+  };
+  if (const auto k = bad_point(end.position); size_t(k) < end.position.size())
+    return name("position of node", k);
+  if (const auto k = bad_point(end.director); size_t(k) < end.director.size())
+    return name("director of node", k);
+  if (const auto k = bad_point(boundary); size_t(k) < boundary.size())
+    return name("prescribed boundary, point", k);
   if (const auto k = bad_number(end.shear); size_t(k) < end.shear.size()) return name("shear of element", k);
   if (const auto k = bad_number(end.warp_strain); size_t(k) < end.warp_strain.size()) {
     return name("warp strain of element", k);

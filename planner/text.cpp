@@ -19,7 +19,8 @@ std::string fixed(double value, int decimals) {
   if (!std::isfinite(value)) return "\u2013";
   std::array<char, 400> buffer;  // the largest double has 309 digits before the point
   const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, decimals).ptr;
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, decimals)
+          .ptr;
   std::string text(buffer.data(), end);
   const bool zero = text.find_first_not_of("-0.") == std::string::npos;
   return zero && text.front() == '-' ? text.substr(1) : text;
@@ -29,14 +30,27 @@ std::string escape_markup(std::string_view text) {
   std::string escaped;
   for (const char c : text) {
     switch (c) {
-      case '&': escaped += "&amp;"; break;
-      case '<': escaped += "&lt;"; break;
-      case '>': escaped += "&gt;"; break;
-      case '"': escaped += "&quot;"; break;
-      case '\'': escaped += "&#39;"; break;
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\'':
+        escaped += "&#39;";
+        break;
       case '\n':
-      case '\t': escaped += c; break;
-      default: escaped += static_cast<unsigned char>(c) < 0x20 ? std::string("\uFFFD") : std::string(1, c);
+      case '\t':
+        escaped += c;
+        break;
+      default:
+        escaped += static_cast<unsigned char>(c) < 0x20 ? std::string("\uFFFD") : std::string(1, c);
     }
   }
   return escaped;

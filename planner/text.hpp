@@ -13,8 +13,8 @@ std::string exact(double value);
 /// `value` with `decimals` digits after the point, never "-0.0"; an en dash where it is not finite.
 std::string fixed(double value, int decimals);
 
-/// For text and attribute values of HTML, SVG and XML: & < > " ' are replaced, and so are control characters that
-/// XML does not allow (by U+FFFD).
+/// For text and attribute values of HTML, SVG and XML: & < > " ' are replaced, and so are control characters
+/// that XML does not allow (by U+FFFD).
 std::string escape_markup(std::string_view text);
 
 /// Writes a file by way of a temporary neighbour, so that no reader ever sees half of it.

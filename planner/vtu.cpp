@@ -1,5 +1,6 @@
 #include "planner/vtu.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -59,8 +60,9 @@ std::string vectors(const std::string& name, const std::vector<Eigen::Vector3d>&
 
 /// An unstructured grid whose cells all have `Corners` corners and one type.
 template <size_t Corners>
-std::string grid(const std::vector<Eigen::Vector3d>& points, const std::vector<std::array<int, Corners>>& cells,
-                 std::uint8_t type, const std::string& point_data, const std::string& cell_data) {
+std::string grid(const std::vector<Eigen::Vector3d>& points,
+                 const std::vector<std::array<int, Corners>>& cells, std::uint8_t type,
+                 const std::string& point_data, const std::string& cell_data) {
   std::vector<std::int64_t> connectivity, offsets;
   for (const auto& cell : cells) {
     connectivity.insert(connectivity.end(), cell.begin(), cell.end());
@@ -68,14 +70,15 @@ std::string grid(const std::vector<Eigen::Vector3d>& points, const std::vector<s
   }
   const std::vector<std::uint8_t> types(cells.size(), type);
   return "<?xml version=\"1.0\"?>\n"
-         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+         "header_type=\"UInt64\">\n"
          "  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" +
          std::to_string(points.size()) + "\" NumberOfCells=\"" + std::to_string(cells.size()) +
          "\">\n      <Points>\n" + vectors("points", points) + "      </Points>\n      <Cells>\n" +
          data_array<std::int64_t>("connectivity", 1, connectivity) +
          data_array<std::int64_t>("offsets", 1, offsets) + data_array<std::uint8_t>("types", 1, types) +
-         "      </Cells>\n      <PointData>\n" + point_data + "      </PointData>\n      <CellData>\n" + cell_data +
-         "      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
+         "      </Cells>\n      <PointData>\n" + point_data + "      </PointData>\n      <CellData>\n" +
+         cell_data + "      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
 }
 
 void check_size(const char* field, size_t size, size_t expected, bool may_be_empty) {
@@ -130,8 +133,8 @@ void write_mold_vtu(const std::filesystem::path& file, const Mold& mold, int n) 
       if (std::min({cell[0], cell[1], cell[2], cell[3]}) >= 0) cells.push_back(cell);
     }
   }
-  write_text(file, grid(points, cells, kVtkQuad, vectors("normal", normals) + scalars("gaussian_curvature", curvature),
-                        ""));
+  write_text(file, grid(points, cells, kVtkQuad,
+                        vectors("normal", normals) + scalars("gaussian_curvature", curvature), ""));
 }
 
 void write_grippers_vtu(const std::filesystem::path& file, const Snapshot& snapshot) {
@@ -152,8 +155,8 @@ void write_pvd(const std::filesystem::path& file, const std::vector<PvdEntry>& e
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
       "  <Collection>\n";
   for (const PvdEntry& entry : entries) {
-    text += "    <DataSet timestep=\"" + exact(entry.time) + "\" part=\"0\" file=\"" + escape_markup(entry.file) +
-            "\"/>\n";
+    text += "    <DataSet timestep=\"" + exact(entry.time) + "\" part=\"0\" file=\"" +
+            escape_markup(entry.file) + "\"/>\n";
   }
   write_text(file, text + "  </Collection>\n</VTKFile>\n");
 }
