@@ -23,13 +23,6 @@ struct Axis {
   double start = 0, length = 1;  ///< [px]; length < 0: upwards
 
   [[nodiscard]] double at(double value) const { return start + length * (value - from) / (to - from); }
-  [[nodiscard]] int decimals() const {
-    for (int digits = 0; digits < 6; ++digits) {
-      const double scaled = step * std::pow(10, digits);
-      if (std::abs(scaled - std::round(scaled)) < 1e-6 * scaled) return digits;
-    }
-    return 6;
-  }
 };
 
 /// Round limits around the values; starts at zero if that costs less than half of the axis.
@@ -54,12 +47,12 @@ void draw_axes(Svg& svg, const Axis& x, const Axis& y, const std::string& x_labe
   for (int k = 0; k <= y_steps; ++k) {
     const double value = y.from + k * y.step;
     svg.line({x.at(x.from), y.at(value)}, {x.at(x.to), y.at(value)}, {.stroke = ink::kGrid});
-    svg.text({x.at(x.from) - 8, y.at(value) + 4}, fixed(value, y.decimals()), left);
+    svg.text({x.at(x.from) - 8, y.at(value) + 4}, fixed(value, decimals_of(y.step)), left);
   }
   for (int k = 0; k <= x_steps; ++k) {
     const double value = x.from + k * x.step;
     svg.line({x.at(value), y.start}, {x.at(value), y.start + 4}, {.stroke = ink::kSoft});
-    svg.text({x.at(value), y.start + 18}, fixed(value, x.decimals()), tick);
+    svg.text({x.at(value), y.start + 18}, fixed(value, decimals_of(x.step)), tick);
   }
   svg.line({x.at(x.from), y.start}, {x.at(x.to), y.start}, {.stroke = ink::kSoft});
   svg.text({x.at(x.to), y.start + 36}, x_label,
@@ -236,10 +229,10 @@ std::string line_chart(const Chart& chart) {
     const ChartSeries& series = chart.series[k];
     if (series.name.empty()) continue;
     svg.text({legend, 48}, series.name, {.size = 12, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
-    constexpr double kLetter = 6.4;  // mean width of a letter at this size
-    legend -= kLetter * double(series.name.size()) + 10;
+    constexpr double kLetter = 5.8;  // mean width of a letter at this size
+    legend -= kLetter * double(series.name.size()) + 6;
     svg.circle({legend, 44}, 4, {.fill = series_colour(k, chart.series.size())});
-    legend -= 16;
+    legend -= 18;
   }
   return svg.finish();
 }
@@ -277,7 +270,7 @@ std::string schedule_picture(const Schedule& schedule, const RigOptions& rig, co
   for (int k = 0; k <= steps; ++k) {
     const double time = x.from + k * x.step;
     svg.line({x.at(time), kTop - 4}, {x.at(time), bottom + 4}, {.stroke = ink::kGrid});
-    svg.text({x.at(time), bottom + 20}, fixed(time, x.decimals()),
+    svg.text({x.at(time), bottom + 20}, fixed(time, decimals_of(x.step)),
              {.size = 11, .anchor = Svg::Anchor::middle, .colour = ink::kSoft});
   }
   svg.text({kLeft + kBars, bottom + 38}, "time [s]",

@@ -19,7 +19,7 @@ constexpr double kPanelSize = 360;  // longer side of the part that is seen
 constexpr double kPanelGap = 30;
 constexpr double kLeft = 58;          // for the ticks of the y axis
 constexpr double kTop = 58;           // for titles
-constexpr double kBottom = 124;       // for ticks, values and the legend
+constexpr double kBottom = 118;       // for ticks, values and the legend
 constexpr double kColourBar = 104;    // with its ticks and its title
 constexpr double kRingDistance = 15;  // between circles on the prescribed boundary
 constexpr double kFarAway = 1e5;      // no coordinate is larger than that
@@ -215,7 +215,7 @@ std::vector<std::string> draw_marks(Svg& svg, const DrapePanel& panel, const Vie
 
 /// Ticks at round millimetres of the mold's frame, along x and, for the first panel, along y.
 void draw_ticks(Svg& svg, const Vector2d& corner, const View& view, const Extent& mold, bool with_y) {
-  const double step = nice_step((mold.upper - mold.lower).maxCoeff(), 4);
+  const double step = nice_step((mold.upper - mold.lower).maxCoeff(), 5);
   const double bottom = corner.y() + view.size().y();
   for (double x = std::ceil(mold.lower.x() / step - 1e-9) * step; x <= mold.upper.x() + 1e-9 * step;
        x += step) {
@@ -224,7 +224,7 @@ void draw_ticks(Svg& svg, const Vector2d& corner, const View& view, const Extent
     svg.text({at, bottom + 17}, fixed(1000 * x, 0),
              {.size = 11, .anchor = Svg::Anchor::middle, .colour = ink::kSoft});
   }
-  svg.text({corner.x() + view.size().x(), bottom + 17}, "x [mm]",
+  svg.text({corner.x() + view.size().x(), bottom + 33}, "x [mm]",
            {.size = 11, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
   if (!with_y) return;
   for (double y = std::ceil(mold.lower.y() / step - 1e-9) * step; y <= mold.upper.y() + 1e-9 * step;
@@ -270,8 +270,7 @@ void draw_panel(Svg& svg, const DrapePanel& panel, const Vector2d& corner, const
 void draw_colour_bar(Svg& svg, const Vector2d& corner, double height, const Bands& bands) {
   constexpr double kWidth = 16;
   const double band_height = height / bands.count;
-  const int decimals = std::clamp(-int(std::floor(std::log10(1000 * bands.step) + 1e-9)) + 1, 0, 6);
-  const bool whole = std::abs(std::round(1000 * bands.step) - 1000 * bands.step) < 1e-9;
+  const int decimals = decimals_of(1000 * bands.step);
   for (int band = 0; band < bands.count; ++band) {
     const double top = corner.y() + height - (band + 1) * band_height;
     svg.rectangle({corner.x(), top}, {kWidth, band_height + (band > 0 ? 0.5 : 0)},
@@ -281,7 +280,7 @@ void draw_colour_bar(Svg& svg, const Vector2d& corner, double height, const Band
   for (int band = 0; band <= bands.count; ++band) {
     const double y = corner.y() + height - band * band_height;
     svg.line({corner.x() + kWidth, y}, {corner.x() + kWidth + 4, y}, {.stroke = ink::kSoft, .width = 0.8});
-    svg.text({corner.x() + kWidth + 8, y + 4}, fixed(1000 * band * bands.step, whole ? 0 : decimals),
+    svg.text({corner.x() + kWidth + 8, y + 4}, fixed(1000 * band * bands.step, decimals),
              {.size = 11, .colour = ink::kSoft});
   }
   svg.text({corner.x() + 62, corner.y() + 0.5 * height}, "gap between ply and mold [mm]",
@@ -302,6 +301,14 @@ void draw_legend(Svg& svg, Vector2d at, const std::vector<DrapePanel>& panels) {
   entry("ply edge", 98);
   draw_cross(svg, at + Vector2d(16, 0));
   entry("largest gap", 116);
+  if (any([](const DrapePanel& p) { return p.largest_offset.has_value(); })) {
+    draw_measure(svg, at + Vector2d(4, 0), at + Vector2d(22, 0));
+    entry("largest boundary offset", 178);
+  }
+  if (any([](const DrapePanel& p) { return !p.pads.empty(); })) {
+    svg.circle(at + Vector2d(14, 0), 8, {.stroke = ink::kText, .width = 0.8, .opacity = 0.55});
+    entry("gripper pad", 100);
+  }
 }
 
 }  // namespace

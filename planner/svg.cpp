@@ -62,7 +62,7 @@ std::string sequential_colour(double t) {
   t = std::isfinite(t) ? std::clamp(t, 0.0, 1.0) : 0.0;
   const double lightness = 0.975 - 0.675 * t;
   const double hue = 105 + 165 * t;
-  const double chroma = 0.035 + 0.085 * std::sin(std::numbers::pi * std::pow(t, 0.85)) + 0.06 * t * t;
+  const double chroma = 0.035 + 0.068 * std::sin(std::numbers::pi * std::pow(t, 0.85)) + 0.07 * t * t;
   return oklch(lightness, chroma, hue);
 }
 
@@ -73,6 +73,15 @@ double nice_step(double range, int most) {
     if (range <= factor * power * most * kRound) return factor * power;
   }
   return 10 * power;
+}
+
+int decimals_of(double step) {
+  constexpr int kMost = 6;
+  for (int digits = 0; digits < kMost; ++digits) {
+    const double scaled = step * std::pow(10, digits);
+    if (std::abs(scaled - std::round(scaled)) < 1e-6 * scaled) return digits;
+  }
+  return kMost;
 }
 
 Svg::Svg(double width, double height, const std::string& title) {

@@ -25,6 +25,9 @@ std::string sequential_colour(double t);
 /// 0.
 double nice_step(double range, int most);
 
+/// Digits after the point that a multiple of `step` needs, at most 6.
+int decimals_of(double step);
+
 /// An SVG document that is written from top to bottom. It uses no ids, so several may stand in one HTML page.
 class Svg {
  public:
