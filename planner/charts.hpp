@@ -11,10 +11,11 @@
 namespace drapeplan {
 
 struct ChartSeries {
-  std::string name;                     ///< in the legend; empty: not listed
-  std::vector<Eigen::Vector2d> points;  ///< in the chart's units; points that are not finite are left out
-  bool dots = false;                    ///< single points instead of a line
-  bool steps = false;                   ///< the value holds until the next point
+  std::string name;  ///< in the legend; empty: not listed
+  std::vector<Eigen::Vector2d>
+      points;          ///< in the chart's units; points that are not finite (failed runs) are left out
+  bool dots = false;   ///< single points instead of a line
+  bool steps = false;  ///< the value holds until the next point
 };
 
 struct Chart {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "planner/text.hpp"
@@ -20,9 +21,9 @@ p { max-width: 46rem; margin: .5rem 0; }
 .soft, figcaption, caption { color: #5b6775; font-size: .9rem; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-caption { caption-side: bottom; text-align: left; padding-top: .5rem; }
-th, td { padding: .38rem .8rem; text-align: right; border-bottom: 1px solid #dfe4ea; white-space: nowrap; }
-th { font-weight: 600; font-size: .86rem; vertical-align: bottom; }
+caption { caption-side: bottom; text-align: left; padding-top: .5rem; max-width: 60rem; }
+th, td { padding: .38rem .7rem; text-align: right; border-bottom: 1px solid #dfe4ea; white-space: nowrap; }
+th { font-weight: 600; font-size: .86rem; line-height: 1.3; vertical-align: bottom; white-space: normal; max-width: 6.2rem; }
 th small { display: block; font-weight: 400; color: #5b6775; }
 th:first-child, td:first-child, .pairs td { text-align: left; }
 .pairs td { white-space: normal; padding: .25rem 1.4rem .25rem 0; vertical-align: top; }
@@ -62,18 +63,19 @@ bool counts(const ReportRow& row, const Column& column) {
   return row.score.valid && !row.reference && std::isfinite(row.score.*column.part);
 }
 
-/// Smallest value of a column as it is shown; nothing if fewer than two rows can be compared.
+/// Smallest value of a column as it is shown; nothing if all rows that can be compared show the same.
 std::optional<std::string> best_text(const std::vector<ReportRow>& rows, const Column& column) {
   if (!column.compared) return std::nullopt;
-  int compared = 0;
-  double best = 0;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double best = kInfinity, worst = -kInfinity;
   for (const ReportRow& row : rows) {
     if (!counts(row, column)) continue;
-    const double value = row.score.*column.part;
-    best = compared++ == 0 ? value : std::min(best, value);
+    best = std::min(best, row.score.*column.part);
+    worst = std::max(worst, row.score.*column.part);
   }
-  if (compared < 2) return std::nullopt;
-  return fixed(column.factor * best, column.decimals);
+  const std::string text = fixed(column.factor * best, column.decimals);
+  if (text == fixed(column.factor * worst, column.decimals)) return std::nullopt;
+  return text;
 }
 
 std::string score_row(const ReportRow& row,

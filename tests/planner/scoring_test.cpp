@@ -233,9 +233,10 @@ TEST(Scoring, NotFiniteInputIsAFailureWithItsPlace) {
 }
 
 TEST(Scoring, MoldThatIsNotDefinedIsAFailure) {
+  // Beside a dome and below its equator there is neither a closest point above ground nor a height.
   const Mesh mesh = rectangle_mesh(kSide, kSide, 0.02);
-  const Mold undefined(PolynomialShape{{{0, 0, kNan}}}, kExtent);
-  const Score score = score_drape(mesh, flat(mesh, {0, 0, 0}), undefined, square(), kThickness, {}, {});
+  const Mold dome(SphereShape{{0, 0, -0.5}, 0.5}, kExtent);
+  const Score score = score_drape(mesh, flat(mesh, {3, 0, -0.7}), dome, square(), kThickness, {}, {});
   EXPECT_FALSE(score.valid);
   EXPECT_EQ(score.reason, "the mold is not defined below node 0");
   EXPECT_EQ(score.objective, kFailedObjective);
