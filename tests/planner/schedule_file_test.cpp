@@ -140,7 +140,7 @@ TEST_F(ScheduleFile, NotFiniteOrWrongSizedSchedulesAreNotWritten) {
 }
 
 TEST_F(ScheduleFile, CsvHoldsKnotsBlendsAndARaster) {
-  const Schedule schedule{{{{0, 1}, {1.003, 0.5}}, {{0, 1}}}, 0.1};
+  const Schedule schedule{{{{0, 1}, {0.55, 0.9}, {1.003, 0.5}}, {{0, 1}}}, 0.1};
   write_schedule_csv(file_, schedule, rig_, 10);
   std::ifstream stream(file_);
   std::string line;
@@ -159,8 +159,8 @@ TEST_F(ScheduleFile, CsvHoldsKnotsBlendsAndARaster) {
     if (i == 1) times.push_back(time);
     if (i == 2) still += std::abs(z - 1) <= 1e-12 && vz == 0;
   }
-  const std::vector<double> expected{0,   0.1, 0.2, 0.3, 0.4,   0.5, 0.6,
-                                     0.7, 0.8, 0.9, 1.0, 1.003, 1.1, 1.003 + 0.1};
+  const std::vector<double> expected{0,          0.1, 0.2, 0.3, 0.4, 0.5,   0.55, 0.6,
+                                     0.55 + 0.1, 0.7, 0.8, 0.9, 1.0, 1.003, 1.1,  1.003 + 0.1};
   EXPECT_EQ(times, expected);
   EXPECT_GE(still, 12);
 }
