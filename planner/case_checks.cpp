@@ -6,8 +6,8 @@
 namespace drapeplan {
 namespace {
 
-constexpr double kSlack = 1e-9;      // [m], so that a point on the ply's edge is on the ply
-constexpr double kMostCells = 4e6;   // of a net or mesh; far above use, below what fills the memory
+constexpr double kSlack = 1e-9;     // [m], so that a point on the ply's edge is on the ply
+constexpr double kMostCells = 4e6;  // of a net or mesh; far above use, below what fills the memory
 
 bool on_ply(const Ply& ply, const Eigen::Vector2d& place) {
   return std::abs(place.x()) <= 0.5 * ply.width + kSlack && std::abs(place.y()) <= 0.5 * ply.height + kSlack;
@@ -20,15 +20,17 @@ std::string ply_text(const Ply& ply) {
          format_quantity(0.5 * ply.height, Dimension::length) + ")";
 }
 
-void check_on_ply(CaseReader& reader, const std::string& pointer, const Ply& ply, const Eigen::Vector2d& place) {
-  if (reader.good(pointer) && !on_ply(ply, place)) reader.fail(pointer, "lies outside the ply; " + ply_text(ply));
+void check_on_ply(CaseReader& reader, const std::string& pointer, const Ply& ply,
+                  const Eigen::Vector2d& place) {
+  if (reader.good(pointer) && !on_ply(ply, place))
+    reader.fail(pointer, "lies outside the ply; " + ply_text(ply));
 }
 
 void check_cells(CaseReader& reader, const std::string& pointer, const Ply& ply, double size) {
   const double cells = std::ceil(ply.width / size) * std::ceil(ply.height / size);
   if (reader.good(pointer) && !(cells <= kMostCells)) {
-    reader.fail(pointer, "would make " + format_number(cells) + " cells of this ply; allowed: " +
-                             format_number(kMostCells));
+    reader.fail(pointer, "would make " + format_number(cells) +
+                             " cells of this ply; allowed: " + format_number(kMostCells));
   }
 }
 
@@ -54,11 +56,11 @@ void check_grippers(const CaseFields& fields, CaseReader& reader) {
   const RigOptions& rig = *fields.value.grippers;
   if (reader.good("/ply") && !on_ply(fields.value.ply, rig.place(0))) {
     const Eigen::Vector2d place = rig.place(rig.count() - 1);
-    reader.fail("/grippers/spacing", "gripper [" + std::to_string(rig.columns) + ", " + std::to_string(rig.rows) +
-                                         "] is off the ply: its pad's centre lies at (" +
-                                         format_quantity(place.x(), Dimension::length) + ", " +
-                                         format_quantity(place.y(), Dimension::length) + "); " +
-                                         ply_text(fields.value.ply));
+    reader.fail("/grippers/spacing",
+                "gripper [" + std::to_string(rig.columns) + ", " + std::to_string(rig.rows) +
+                    "] is off the ply: its pad's centre lies at (" +
+                    format_quantity(place.x(), Dimension::length) + ", " +
+                    format_quantity(place.y(), Dimension::length) + "); " + ply_text(fields.value.ply));
   }
   if (rig.count() > 1 && rig.spacing < 2 * rig.pad_radius) {
     reader.fail("/grippers/spacing", "the pads overlap; allowed: at least twice pad_radius, " +
@@ -67,8 +69,8 @@ void check_grippers(const CaseFields& fields, CaseReader& reader) {
   if (!rig.fixed) return;
   const auto [i, j] = *rig.fixed;
   if (i < 1 || i > rig.columns || j < 1 || j > rig.rows) {
-    reader.fail("/grippers/fixed", "there is no such gripper; allowed: [1, 1] to [" + std::to_string(rig.columns) +
-                                       ", " + std::to_string(rig.rows) + "]");
+    reader.fail("/grippers/fixed", "there is no such gripper; allowed: [1, 1] to [" +
+                                       std::to_string(rig.columns) + ", " + std::to_string(rig.rows) + "]");
   }
 }
 

@@ -6,9 +6,13 @@
 namespace drapeplan {
 namespace {
 
-Curve straight(double modulus) { return {{0, 1}, {0, modulus}}; }
+Curve straight(double modulus) {
+  return {{0, 1}, {0, modulus}};
+}
 
-bool is_straight(const Curve& curve) { return curve.strain == std::vector<double>{0, 1} && curve.stress.size() == 2; }
+bool is_straight(const Curve& curve) {
+  return curve.strain == std::vector<double>{0, 1} && curve.stress.size() == 2;
+}
 
 Curve scaled(const CurveFields& fields) {
   Curve curve = fields.curve;
@@ -28,7 +32,8 @@ Fabric fabric_of(const MaterialFields& m) {
   return fabric;
 }
 
-/// Tables that are straight lines through strain 1 are stated as the linear law, so that moduli keep their names.
+/// Tables that are straight lines through strain 1 are stated as the linear law, so that moduli keep their
+/// names.
 MaterialFields material_fields(const Fabric& fabric, const MaterialNotes& notes) {
   MaterialFields m;
   m.name = notes.name;
@@ -53,10 +58,14 @@ MaterialFields material_fields(const Fabric& fabric, const MaterialNotes& notes)
 
 Mold::Shape shape_of(const MoldFields& m) {
   switch (m.shape) {
-    case 0: return PlaneShape{m.angle};
-    case 2: return SphereShape{m.centre, m.radius};
-    case 3: return CylinderShape{m.centre, m.azimuth, m.radius};
-    default: break;
+    case 0:
+      return PlaneShape{m.angle};
+    case 2:
+      return SphereShape{m.centre, m.radius};
+    case 3:
+      return CylinderShape{m.centre, m.azimuth, m.radius};
+    default:
+      break;
   }
   PolynomialShape shape{m.terms};
   for (PolynomialShape::Term& term : shape.terms) term.coefficient *= std::pow(m.unit, 1 - term.i - term.j);

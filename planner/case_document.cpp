@@ -65,7 +65,8 @@ std::string set_at(json& root, const std::vector<std::string>& parts, json value
     const std::string& part = parts[k];
     const bool last = k + 1 == parts.size();
     if (here->is_array()) {
-      const bool digits = !part.empty() && part.size() < 9 && part.find_first_not_of("0123456789") == part.npos;
+      const bool digits =
+          !part.empty() && part.size() < 9 && part.find_first_not_of("0123456789") == part.npos;
       const size_t index = digits ? std::stoul(part) : std::numeric_limits<size_t>::max();
       if (index >= here->size()) {
         return "\"" + part + "\" is no index of a list with " + std::to_string(here->size()) + " entries";
@@ -152,7 +153,8 @@ void CaseDocument::apply(const std::string& override_text) {
     errors_.push_back({"--set " + override_text, 0, "", message});
   };
   const std::vector<std::string> parts = split(override_text.substr(0, equals), '.');
-  const bool empty_part = std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.empty(); });
+  const bool empty_part =
+      std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.empty(); });
   if (equals == std::string::npos || parts.empty() || empty_part || parts.size() > 16) {
     return fail("expected path=value, e.g. friction.coefficient=0.3");
   }

@@ -23,7 +23,7 @@ struct Range {
   double highest = std::numeric_limits<double>::infinity();
   bool lowest_excluded = false;
   bool highest_excluded = false;
-  std::vector<int> only;  ///< if not empty: these numbers and no others
+  std::vector<int> only = {};  ///< if not empty: these numbers and no others
 
   [[nodiscard]] bool holds(double value) const;  ///< false for NaN
 };
@@ -48,8 +48,9 @@ struct Table {
   Dimension abscissa = Dimension::strain;
 };
 
-using Target = std::variant<double*, std::optional<double>*, int*, unsigned*, bool*, std::string*, Eigen::Vector2d*,
-                            Eigen::Vector3d*, std::optional<std::array<int, 2>>*, Extent*, Choice, ChoiceList, Table>;
+using Target =
+    std::variant<double*, std::optional<double>*, int*, unsigned*, bool*, std::string*, Eigen::Vector2d*,
+                 Eigen::Vector3d*, std::optional<std::array<int, 2>>*, Extent*, Choice, ChoiceList, Table>;
 
 struct Field {
   std::string name;
@@ -58,8 +59,8 @@ struct Field {
   Dimension dimension = Dimension::none;
   Range range = {};
   bool required = false;
-  std::string default_words = {};         ///< where the default depends on other fields
-  std::vector<std::string> needs = {};    ///< sections of the case without which the field makes no sense
+  std::string default_words = {};       ///< where the default depends on other fields
+  std::vector<std::string> needs = {};  ///< sections of the case without which the field makes no sense
 };
 
 struct Section {
@@ -148,7 +149,8 @@ void visit_case(FieldVisitor& visitor, CaseFields& fields);
 void complete_case(CaseFields& fields);
 CaseFields fields_of(const Case& value);
 
-/// What a range allows, in the units of the dimension: "> 0 mm", "from 0 deg up to 90 deg (excluded)"; may be empty.
+/// What a range allows, in the units of the dimension: "> 0 mm", "from 0 deg up to 90 deg (excluded)"; may be
+/// empty.
 std::string range_text(const Range& range, Dimension dimension);
 
 }  // namespace drapeplan

@@ -34,7 +34,8 @@ bool CaseReader::good(const std::string& pointer) const {
                       [&pointer](const std::string& failed) { return failed.starts_with(pointer); });
 }
 
-void CaseReader::visit_object(const json& object, const std::string& pointer, const std::function<void()>& visit) {
+void CaseReader::visit_object(const json& object, const std::string& pointer,
+                              const std::function<void()>& visit) {
   if (document_.unread(pointer)) return failed_.push_back(pointer);
   if (!object.is_object()) return fail(pointer, "expected an object { ... }");
   Frame frame;
@@ -56,8 +57,8 @@ void CaseReader::check_keys(const Frame& frame) {
       continue;
     }
     const std::string nearest = nearest_word(key, frame.known);
-    const std::string hint = nearest.empty() ? "known: " + alternatives_text(frame.known)
-                                             : "did you mean \"" + nearest + "\"?";
+    const std::string hint =
+        nearest.empty() ? "known: " + alternatives_text(frame.known) : "did you mean \"" + nearest + "\"?";
     add_error(pointer, "unknown key \"" + key + "\"; " + hint);
   }
 }
@@ -127,7 +128,8 @@ void CaseReader::list(const ObjectList& list) {
   if (value == nullptr) return;
   check_needs(list.name, list.needs);
   const std::string pointer = frames_.back().pointer + pointer_token(list.name);
-  if (!value->is_array() || (list.required && value->empty())) return fail(pointer, "expected a list [ ... ]");
+  if (!value->is_array() || (list.required && value->empty()))
+    return fail(pointer, "expected a list [ ... ]");
   list.resize(value->size());
   for (size_t k = 0; k < value->size(); ++k) {
     visit_object((*value)[k], pointer + '/' + std::to_string(k), [&] { list.visit(k); });

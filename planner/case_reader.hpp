@@ -34,15 +34,17 @@ class CaseReader : public FieldVisitor {
   struct Frame {
     const nlohmann::json* object = nullptr;
     std::string pointer;
-    std::vector<std::string> known;               ///< names of all its fields
-    std::map<std::string, std::string> elsewhere;  ///< fields of an alternative that was not chosen -> which one
+    std::vector<std::string> known;  ///< names of all its fields
+    std::map<std::string, std::string>
+        elsewhere;                         ///< fields of an alternative that was not chosen -> which one
     std::set<std::string> failed_choices;  ///< wrong words: then nobody knows which alternative is meant
   };
 
   /// The value called `name` in the current object, or nullptr with an error if it is required.
   const nlohmann::json* find(const std::string& name, bool required, const std::string& doc);
   /// Visits the fields of `object`, then looks for keys that nobody asked for.
-  void visit_object(const nlohmann::json& object, const std::string& pointer, const std::function<void()>& visit);
+  void visit_object(const nlohmann::json& object, const std::string& pointer,
+                    const std::function<void()>& visit);
   void add_error(const std::string& pointer, std::string message);
   void check_keys(const Frame& frame);
   void check_needs(const std::string& name, const std::vector<std::string>& needs);

@@ -43,7 +43,8 @@ json number_schema(const Field& field) {
     return schema;
   }
   std::string units;
-  for (const Unit& unit : words_of(field.dimension).units) units += (units.empty() ? "" : "|") + literal(unit.name);
+  for (const Unit& unit : words_of(field.dimension).units)
+    units += (units.empty() ? "" : "|") + literal(unit.name);
   schema["type"] = "string";
   schema["pattern"] = "^\\s*[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?\\s*(" + units + ")\\s*$";
   return schema;
@@ -61,10 +62,11 @@ json integer_schema(const Field& field) {
 }
 
 json table_schema(const Table& table) {
-  const json units = {{"type", "array"},
-                      {"prefixItems", {{{"enum", unit_names(table.abscissa)}}, {{"enum", unit_names(Dimension::stress)}}}},
-                      {"minItems", 2},
-                      {"maxItems", 2}};
+  const json units = {
+      {"type", "array"},
+      {"prefixItems", {{{"enum", unit_names(table.abscissa)}}, {{"enum", unit_names(Dimension::stress)}}}},
+      {"minItems", 2},
+      {"maxItems", 2}};
   return {{"type", "array"},
           {"prefixItems", json::array({units})},
           {"items", fixed_list({{"type", "number"}}, 2)},
@@ -144,7 +146,8 @@ class SchemaWriter : public FieldVisitor {
     }
     // A selector that is not stated chooses the default alternative.
     json condition = {{"properties", {{selector, {{"const", word}}}}}};
-    if (!selected || here["properties"][selector].value("default", "") != word) condition["required"] = {selector};
+    if (!selected || here["properties"][selector].value("default", "") != word)
+      condition["required"] = {selector};
     if (then.contains("required")) {
       here["allOf"].push_back({{"if", condition}, {"then", {{"required", then["required"]}}}});
     }
@@ -160,8 +163,9 @@ class SchemaWriter : public FieldVisitor {
 
   void named(const NamedObjects& objects) override {
     json entry = object([&] { objects.visit("any"); });
-    add(objects.name, {{"type", "object"}, {"description", objects.doc}, {"additionalProperties", std::move(entry)}},
-        false, objects.needs);
+    add(objects.name,
+        {{"type", "object"}, {"description", objects.doc}, {"additionalProperties", std::move(entry)}}, false,
+        objects.needs);
   }
 
  private:
@@ -220,7 +224,8 @@ const json* find_field(const json& schema, const std::string& path) {
 std::string words(const json& list) {
   std::string text;
   for (const json& word : list) {
-    text += (text.empty() ? "" : ", ") + (word.is_string() ? word.get<std::string>() : word.dump());
+    if (!text.empty()) text += ", ";
+    text += word.is_string() ? word.get<std::string>() : word.dump();
   }
   return text;
 }

@@ -33,7 +33,9 @@ struct ValueReader {
     fault(where, message);
     return false;
   }
-  [[nodiscard]] ValueReader at(size_t index) const { return {field, fault, where + '/' + std::to_string(index)}; }
+  [[nodiscard]] ValueReader at(size_t index) const {
+    return {field, fault, where + '/' + std::to_string(index)};
+  }
 
   bool in_range(double value) const {
     return field.range.holds(value) || fail("out of range" + allowed_text(field));
@@ -47,11 +49,13 @@ struct ValueReader {
     }
     const DimensionWords& words = words_of(field.dimension);
     if (value.is_number()) {
-      return fail("a bare number has no unit; expected " + words.name + " as text, e.g. \"" + words.example + '"');
+      return fail("a bare number has no unit; expected " + words.name + " as text, e.g. \"" + words.example +
+                  '"');
     }
     if (!value.is_string()) return fail("expected " + words.name + " as text, e.g. \"" + words.example + '"');
     std::string message;
-    const std::optional<double> parsed = parse_quantity(value.get_ref<const std::string&>(), field.dimension, message);
+    const std::optional<double> parsed =
+        parse_quantity(value.get_ref<const std::string&>(), field.dimension, message);
     if (!parsed) return fail(message);
     target = *parsed;
     return in_range(target);
@@ -119,7 +123,8 @@ struct ValueReader {
   }
 
   bool words(const json& value, const ChoiceList& target) const {
-    if (!value.is_array() || value.empty()) return fail("expected a list of " + alternatives_text(target.words));
+    if (!value.is_array() || value.empty())
+      return fail("expected a list of " + alternatives_text(target.words));
     std::vector<int> indices;
     bool good = true;
     for (size_t k = 0; k < value.size(); ++k) {
@@ -151,7 +156,8 @@ bool ValueReader::table(const json& value, const Table& target) const {
   const std::string x_unit = x_words.units[x_words.preferred].name;
   const std::string example = "[[\"" + x_unit + "\", \"MPa\"], [0, 0], [0.5, 45.6], ...]";
   constexpr size_t kFewestRows = 3;  // units, origin, one point
-  if (!value.is_array() || value.size() < kFewestRows) return fail("expected at least three rows, e.g. " + example);
+  if (!value.is_array() || value.size() < kFewestRows)
+    return fail("expected at least three rows, e.g. " + example);
   bool good = true;
   for (size_t row = 0; row < value.size(); ++row) {
     const std::string what = row == 0 ? "the units of the columns, e.g. [\"" + x_unit + "\", \"MPa\"]"
@@ -165,7 +171,8 @@ bool ValueReader::table(const json& value, const Table& target) const {
     const json& name = value[0][k];
     if (name.is_string()) units[k] = find_unit(dimensions[k], name.get_ref<const std::string&>());
     if (units[k] == nullptr) {
-      good = at(0).at(k).fail(unit_fault(name.is_string() ? name.get<std::string>() : value_text(name), dimensions[k]));
+      good = at(0).at(k).fail(
+          unit_fault(name.is_string() ? name.get<std::string>() : value_text(name), dimensions[k]));
     }
   }
   if (!good) return false;
@@ -212,7 +219,8 @@ json table_rows(const Table& table) {
     }
     const bool exact = numbers.size() == count;
     rows[0].push_back(words.units[exact ? words.preferred : 0].name);
-    for (size_t row = 0; row < count; ++row) rows[row + 1].push_back(exact ? numbers[row] : (*columns[k])[row]);
+    for (size_t row = 0; row < count; ++row)
+      rows[row + 1].push_back(exact ? numbers[row] : (*columns[k])[row]);
   }
   return rows;
 }
@@ -224,7 +232,8 @@ std::string value_text(const json& value) {
   std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
   if (text.size() > kLongest) {
     text.resize(kLongest);
-    while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0x80) != 0) text.pop_back();  // whole characters
+    while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0x80) != 0)
+      text.pop_back();  // whole characters
     text += "...";
   }
   return text;

@@ -17,7 +17,8 @@ json CaseWriter::object(const std::function<void()>& visit) {
 }
 
 bool CaseWriter::useful(const std::vector<std::string>& needs) const {
-  return std::all_of(needs.begin(), needs.end(), [this](const auto& need) { return stack_.front().contains(need); });
+  return std::all_of(needs.begin(), needs.end(),
+                     [this](const auto& need) { return stack_.front().contains(need); });
 }
 
 void CaseWriter::field(const Field& field) {

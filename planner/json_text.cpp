@@ -79,10 +79,15 @@ class LineScanner {
  private:
   void value(const std::string& pointer) {
     switch (text_[at_]) {
-      case '{': return object(pointer);
-      case '[': return array(pointer);
-      case '"': string(); return;
-      default: at_ = std::min(text_.find_first_of(",]} \t\r\n", at_), text_.size());
+      case '{':
+        return object(pointer);
+      case '[':
+        return array(pointer);
+      case '"':
+        string();
+        return;
+      default:
+        at_ = std::min(text_.find_first_of(",]} \t\r\n", at_), text_.size());
     }
   }
 

@@ -17,13 +17,14 @@ struct TextFault {
 };
 
 struct ParsedText {
-  nlohmann::json value;              ///< only meaningful without faults
-  std::map<std::string, int> lines;  ///< JSON pointer of every value -> line of its key or, in lists, of itself
-  std::vector<TextFault> faults;     ///< a syntax error (then the only one), or all duplicate keys
+  nlohmann::json value;  ///< only meaningful without faults
+  std::map<std::string, int>
+      lines;                      ///< JSON pointer of every value -> line of its key or, in lists, of itself
+  std::vector<TextFault> faults;  ///< a syntax error (then the only one), or all duplicate keys
 };
 
-/// Parses JSON (RFC 8259, no comments). A number that no double can hold, a key that appears twice in an object,
-/// and nesting deeper than 64 levels are faults too. Never throws for bad input.
+/// Parses JSON (RFC 8259, no comments). A number that no double can hold, a key that appears twice in an
+/// object, and nesting deeper than 64 levels are faults too. Never throws for bad input.
 ParsedText parse_json_text(std::string_view text);
 
 /// `key` as a JSON pointer token (RFC 6901), with the leading slash.

@@ -33,8 +33,7 @@ const std::map<Dimension, DimensionWords>& all_dimensions() {
          {"GPa", 1e9, 1},
          {"N/mm^2", 1e6, 1},
          {"N/m^2", 1, 1}}}},
-      {Dimension::areal_density,
-       {"a mass per area", "314 g/m^2", 1, {{"kg/m^2", 1, 1}, {"g/m^2", 1, 1e3}}}},
+      {Dimension::areal_density, {"a mass per area", "314 g/m^2", 1, {{"kg/m^2", 1, 1}, {"g/m^2", 1, 1e3}}}},
       {Dimension::line_stiffness,
        {"a force per length", "10 N/mm", 1, {{"N/m", 1, 1}, {"N/mm", 1e3, 1}, {"kN/m", 1e3, 1}}}},
       {Dimension::velocity,
@@ -58,7 +57,9 @@ std::string expected(Dimension dimension) {
   return "expected " + words.name + ", e.g. \"" + words.example + '"';
 }
 
-double to_inside(double number, const Unit& unit) { return number * unit.multiply / unit.divide; }
+double to_inside(double number, const Unit& unit) {
+  return number * unit.multiply / unit.divide;
+}
 
 /// Shortest number that `unit` turns into exactly `value`: first the rounded ones, which a person would have
 /// written, then the exact quotient.
@@ -77,7 +78,9 @@ std::optional<std::string> number_in_unit(double value, const Unit& unit) {
 
 }  // namespace
 
-const DimensionWords& words_of(Dimension dimension) { return all_dimensions().at(dimension); }
+const DimensionWords& words_of(Dimension dimension) {
+  return all_dimensions().at(dimension);
+}
 
 const Unit* find_unit(Dimension dimension, std::string_view name) {
   for (const Unit& unit : words_of(dimension).units) {

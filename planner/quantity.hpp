@@ -11,8 +11,8 @@ namespace drapeplan {
 enum class Dimension {
   none,  ///< a bare number
   length,
-  angle,     ///< inside [rad]
-  degrees,   ///< an angle that is kept in degrees inside, where the name of the variable says so
+  angle,    ///< inside [rad]
+  degrees,  ///< an angle that is kept in degrees inside, where the name of the variable says so
   time,
   mass,
   force,
@@ -25,7 +25,8 @@ enum class Dimension {
   strain,  ///< in tables only: per cent or "1"
 };
 
-/// SI value = number * multiply / divide. Both are exact, so that the result is the nearest double to the decimal.
+/// SI value = number * multiply / divide. Both are exact, so that the result is the nearest double to the
+/// decimal.
 struct Unit {
   std::string name;
   double multiply = 1;
@@ -34,8 +35,8 @@ struct Unit {
 
 /// What a dimension is called and which units it may have; the first unit is that of the inside value.
 struct DimensionWords {
-  std::string name;     ///< "a length"
-  std::string example;  ///< "0.3 mm"
+  std::string name;      ///< "a length"
+  std::string example;   ///< "0.3 mm"
   size_t preferred = 0;  ///< unit for display
   std::vector<Unit> units;
 };
@@ -45,7 +46,8 @@ const DimensionWords& words_of(Dimension dimension);
 /// The unit called `name`, or nullptr.
 const Unit* find_unit(Dimension dimension, std::string_view name);
 
-/// Finite value [SI] of a quantity such as "0.3 mm"; otherwise empty, and `fault` says why and what was expected.
+/// Finite value [SI] of a quantity such as "0.3 mm"; otherwise empty, and `fault` says why and what was
+/// expected.
 std::optional<double> parse_quantity(std::string_view text, Dimension dimension, std::string& fault);
 
 /// Shortest text in the preferred unit, or else the SI unit, that parse_quantity turns into exactly `value`.
