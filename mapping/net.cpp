@@ -1,0 +1,187 @@
+#include "mapping/net.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "mapping/cell.hpp"
+#include "mapping/geodesic.hpp"
+
+namespace drapeplan {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kRoundOff = 1e-9;  // of a ply side: a shorter rest is no cell of its own
+constexpr double kMostNodes = 4e6;  // a net beyond this is a typing error in the cell size
+
+// Directions in the x-y plane of the four half lines: +warp, +weft, -warp, -weft.
+using HalfLines = std::array<Eigen::Vector2d, 4>;
+
+[[noreturn]] void throw_at(const char* what, const Eigen::Vector3d& at) {
+  std::ostringstream text;
+  text << "mapping: " << what << " (x, y) = (" << at.x() << ", " << at.y() << ") m";
+  throw std::domain_error(text.str());
+}
+
+void check(const Ply& ply, const MappingOptions& options) {
+  const Eigen::Vector2d half(ply.width / 2, ply.height / 2);
+  if (!(half.minCoeff() > 0) || !half.allFinite()) {
+    throw std::invalid_argument("mapping: the ply's width and height must be > 0 m");
+  }
+  if (!std::isfinite(ply.angle)) throw std::invalid_argument("mapping: the ply's angle is not finite");
+  if (!(options.cell_size > 0)) throw std::invalid_argument("mapping: cell_size must be > 0 m");
+  const Eigen::Vector2d cells = 2 * half / options.cell_size;
+  if (!((cells.x() + 3) * (cells.y() + 3) <= kMostNodes)) {
+    throw std::invalid_argument("mapping: cell_size " + std::to_string(options.cell_size) +
+                                " m gives a net of too many nodes");
+  }
+  if (!((options.ply_start.cwiseAbs() - (1 + kRoundOff) * half).maxCoeff() <= 0)) {
+    throw std::invalid_argument("mapping: ply_start lies outside the ply");
+  }
+}
+
+// Net lines across one ply direction: one exactly at `start`, equal cells on each side of it up to the edges.
+struct Lines {
+  std::vector<double> at;  // increasing [m]
+  int start = 0;           // index of the line through the start point
+};
+
+Lines net_lines(double side, double start, double cell_size) {
+  const double half = side / 2;
+  const auto cells = [&](double length) {
+    return length <= kRoundOff * side ? 0 : static_cast<int>(std::ceil(length / cell_size * (1 - kRoundOff)));
+  };
+  const int before = cells(start + half), after = cells(half - start);
+  Lines lines{{}, before};
+  for (int k = 0; k < before; ++k) lines.at.push_back(-half + (start + half) * k / before);
+  lines.at.push_back(start);
+  for (int k = 1; k <= after; ++k) lines.at.push_back(k == after ? half : start + (half - start) * k / after);
+  return lines;
+}
+
+// Of the extent's mid-sides in counter-clockwise order, the rotation of the order that follows the fibres
+// best.
+HalfLines mid_side_directions(const Mold& mold, const Eigen::Vector2d& start, const HalfLines& fibres) {
+  const Extent& extent = mold.extent();
+  const Eigen::Vector2d middle = (extent.lower + extent.upper) / 2;
+  const HalfLines mid_sides = {
+      Eigen::Vector2d(extent.upper.x(), middle.y()), Eigen::Vector2d(middle.x(), extent.upper.y()),
+      Eigen::Vector2d(extent.lower.x(), middle.y()), Eigen::Vector2d(middle.x(), extent.lower.y())};
+  const auto agreement = [&](size_t turn) {
+    double sum = 0;
+    for (size_t k = 0; k < 4; ++k) sum += fibres[k].dot((mid_sides[(k + turn) % 4] - start).normalized());
+    return sum;
+  };
+  size_t best = 0;
+  for (size_t turn = 1; turn < 4; ++turn) best = agreement(turn) > agreement(best) ? turn : best;
+  HalfLines directions;
+  for (size_t k = 0; k < 4; ++k) directions[k] = geodesic_direction(mold, start, mid_sides[(k + best) % 4]);
+  return directions;
+}
+
+HalfLines generator_directions(const Mold& mold, double angle, const MappingOptions& options) {
+  const Eigen::Vector2d& start = options.start;
+  const Eigen::Vector2d warp(std::cos(angle), std::sin(angle));
+  const Eigen::Vector2d weft(-warp.y(), warp.x());
+  if (options.generators == Generators::axes) return {warp, weft, -warp, -weft};
+  if (options.generators == Generators::mid_sides) {
+    return mid_side_directions(mold, start, {warp, weft, -warp, -weft});
+  }
+  const Jet f = mold.jet(start.x(), start.y());
+  const Eigen::Vector3d tangent(warp.x(), warp.y(), f.zx * warp.x() + f.zy * warp.y());
+  const Eigen::Vector2d square = Eigen::Vector3d(-f.zx, -f.zy, 1).cross(tangent).head<2>();
+  return {warp, square, -warp, -square};
+}
+
+// One node further along a geodesic. The net's edges are chords, so the arc is stretched until the chord has
+// the length of the flat edge: with arcs on the generators and chords elsewhere the first row of cells would
+// show a shear of the order of the cell size.
+Geodesic chord_step(const Mold& mold, const Eigen::Vector3d& from, const Eigen::Vector2d& direction,
+                    double chord) {
+  constexpr double kTolerance = 1e-15;  // round-off of places below 1 m [m]
+  constexpr int kMaxIterations = 40;
+  double arc = chord;
+  for (int k = 0; k < kMaxIterations; ++k) {
+    Geodesic line = shoot_geodesic(mold, from.head<2>(), direction, arc, 1);
+    const double reached = (line.points.back() - from).norm();
+    if (std::abs(reached - chord) <= kTolerance) return line;
+    arc *= chord / reached;
+  }
+  throw_at("cells are too large for the mold's curvature at", from);
+}
+
+// A half line of nodes: indices first, first + stride, ... of the net.
+void lay_half_line(const Mold& mold, const Eigen::Vector2d& direction, double chord, int count, size_t start,
+                   std::ptrdiff_t stride, std::vector<Eigen::Vector3d>& nodes) {
+  Eigen::Vector2d heading = direction;
+  for (int k = 1; k <= count; ++k) {
+    const auto at = static_cast<size_t>(static_cast<std::ptrdiff_t>(start) + k * stride);
+    const auto previous = static_cast<size_t>(static_cast<std::ptrdiff_t>(at) - stride);
+    const Geodesic step = chord_step(mold, nodes[previous], heading, chord);
+    nodes[at] = step.points.back();
+    heading = step.end_direction.head<2>();
+  }
+}
+
+// The free corner must lie across the diagonal from `base`: the mirrored solution folds the cell onto itself.
+bool is_folded(const Cell& cell, const Eigen::Vector3d& corner) {
+  return !((corner - cell.first).dot(cell.second - cell.base) > 0 &&
+           (corner - cell.second).dot(cell.first - cell.base) > 0);
+}
+
+// Fills the quadrant that lies in the direction (di, dj) from the start node, element by element.
+void fill_quadrant(const Mold& mold, int i0, int j0, int di, int dj, Net& net) {
+  const int nu = static_cast<int>(net.u.size()), nv = static_cast<int>(net.v.size());
+  for (int j = j0 + dj; j >= 0 && j < nv; j += dj) {
+    for (int i = i0 + di; i >= 0 && i < nu; i += di) {
+      const Cell cell{net.node(i - di, j - dj), net.node(i, j - dj), net.node(i - di, j),
+                      std::abs(net.u[size_t(i)] - net.u[size_t(i - di)]),
+                      std::abs(net.v[size_t(j)] - net.v[size_t(j - dj)])};
+      const FreeCorner corner = place_free_corner(mold, cell);
+      if (!corner.point.allFinite()) throw_at("the mold ends beyond", cell.base);
+      if (is_folded(cell, corner.point)) throw_at("the net folds onto itself beyond", cell.base);
+      net.converged = net.converged && corner.converged;
+      net.nodes[size_t(i) + size_t(j) * net.u.size()] = corner.point;
+    }
+  }
+}
+
+}  // namespace
+
+Net map_ply(const Mold& mold, const Ply& ply, const MappingOptions& options) {
+  check(ply, options);
+  const Lines u = net_lines(ply.width, options.ply_start.x(), options.cell_size);
+  const Lines v = net_lines(ply.height, options.ply_start.y(), options.cell_size);
+  const size_t nu = u.at.size(), nv = v.at.size();
+  Net net{u.at, v.at, std::vector<Eigen::Vector3d>(nu * nv, Eigen::Vector3d::Constant(kNaN)), true};
+
+  const size_t start = size_t(u.start) + size_t(v.start) * nu;
+  net.nodes[start] = mold.point(options.start.x(), options.start.y());
+  if (!net.nodes[start].allFinite()) throw_at("no mold at the start", net.nodes[start]);
+
+  const HalfLines directions = generator_directions(mold, ply.angle, options);
+  const auto lay = [&](size_t k, const Lines& lines, bool forward, std::ptrdiff_t stride) {
+    const int count = forward ? static_cast<int>(lines.at.size()) - 1 - lines.start : lines.start;
+    if (count == 0) return;
+    const double chord =
+        std::abs((forward ? lines.at.back() : lines.at.front()) - lines.at[size_t(lines.start)]) / count;
+    lay_half_line(mold, directions[k], chord, count, start, forward ? stride : -stride, net.nodes);
+  };
+  lay(0, u, true, 1);
+  lay(1, v, true, static_cast<std::ptrdiff_t>(nu));
+  lay(2, u, false, 1);
+  lay(3, v, false, static_cast<std::ptrdiff_t>(nu));
+
+  for (const int dj : {1, -1}) {
+    for (const int di : {1, -1}) fill_quadrant(mold, u.start, v.start, di, dj, net);
+  }
+  return net;
+}
+
+}  // namespace drapeplan
