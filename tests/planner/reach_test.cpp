@@ -1,0 +1,459 @@
+#include "planner/reach.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <thread>
+
+#include "planner/reach_ipopt.hpp"
+#include "planner/reach_nlp.hpp"
+
+namespace drapeplan {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kLinkTolerance = 1e-6;  // [m], demanded of every solution
+
+/// The double-curved mold of the seed's 5x5 demonstration.
+Mold seed_mold() {
+  return {PolynomialShape{{{1, 0, 1.004},
+                           {0, 1, 1.089},
+                           {2, 0, -3.667},
+                           {1, 1, -4.4},
+                           {0, 2, -3.75},
+                           {3, 0, 3.086},
+                           {2, 1, 8.889},
+                           {0, 3, 4.321}}},
+          {{0, 0}, {0.45, 0.45}}};
+}
+
+RigOptions grid(int columns, int rows, double spacing, double offset) {
+  RigOptions rig;
+  rig.columns = columns;
+  rig.rows = rows;
+  rig.spacing = spacing;
+  rig.joint_offset = offset;
+  return rig;
+}
+
+/// Targets straight above the flat places, drawn together by `shrink`: near a draped ply, and never
+/// reachable.
+ReachProblem seed_problem(double offset = 0.005, double shrink = 0.96) {
+  RigOptions rig = grid(5, 5, 0.1, offset);
+  rig.fixed = {3, 3};
+  const Eigen::Vector2d middle(0.225, 0.225);
+  ReachProblem problem{rig, seed_mold(), {}, middle};
+  for (int k = 0; k < rig.count(); ++k) {
+    const Eigen::Vector2d place = middle + shrink * rig.place(k);
+    problem.targets.push_back(problem.mold.point(place.x(), place.y()));
+  }
+  return problem;
+}
+
+/// A row of grippers whose targets are the places of a taut strip along the great circle (or the cylinder's
+/// circumference) over the top, at arc lengths of `rig.spacing`; the mold's top is at the origin's x-y.
+ReachProblem strip(const RigOptions& rig, const Mold& mold, double radius) {
+  ReachProblem problem{rig, mold, {}, {0, 0}};
+  for (int k = 0; k < rig.count(); ++k) {
+    const double x = radius * std::sin(rig.place(k).x() / radius);
+    problem.targets.push_back(mold.point(x, 0));
+  }
+  return problem;
+}
+
+Mold sphere(double radius) {
+  return {SphereShape{{0, 0, 0}, radius}, {{-radius, -radius}, {radius, radius}}};
+}
+
+Mold cylinder(double radius) {  // its axis along y
+  return {CylinderShape{{0, 0, 0}, 90 * kDegree, radius}, {{-radius, -1}, {radius, 1}}};
+}
+
+/// Angle that an interlink of length L spans on the circle of the joints, less the angle of an arc of length
+/// L.
+double excess_angle(double spacing, double radius, double offset) {
+  return 2 * std::asin(spacing / (2 * (radius + offset))) - spacing / radius;
+}
+
+// ---- derivatives
+
+struct Formulation {
+  ReachGoal goal;
+  bool free_links;
+};
+
+class ReachDerivatives : public testing::TestWithParam<Formulation> {
+ protected:
+  void SetUp() override {
+    problem_ = seed_problem(0.02);
+    problem_.rig.columns = 3;
+    problem_.rig.rows = 2;
+    problem_.rig.fixed = {2, 1};
+    problem_.targets.resize(6);
+    nlp_ = std::make_unique<ReachNlp>(problem_, GetParam().goal, GetParam().free_links);
+    std::mt19937 bits(7);
+    std::uniform_real_distribution<double> uniform(-0.3, 0.3);
+    std::vector<Eigen::Vector2d> places;
+    for (const Eigen::Vector3d& t : problem_.targets) {
+      places.emplace_back(t.x() + 0.1 * uniform(bits), t.y() + 0.1 * uniform(bits));
+    }
+    point_ = nlp_->variables_at(places);
+    multipliers_.resize(nlp_->constraints());
+    for (double& m : multipliers_) m = 3 * uniform(bits);
+  }
+
+  static Eigen::MatrixXd dense(const ReachNlp::Pattern& pattern, const Eigen::VectorXd& values, int rows,
+                               int columns) {
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, columns);
+    for (size_t k = 0; k < pattern.size(); ++k) matrix(pattern[k].first, pattern[k].second) += values[int(k)];
+    return matrix;
+  }
+
+  Eigen::MatrixXd jacobian(const Eigen::VectorXd& v) const {
+    return dense(nlp_->jacobian_pattern(), nlp_->jacobian_values(v), nlp_->constraints(), nlp_->variables());
+  }
+
+  /// Central difference of a vector function along variable k.
+  template <class Function>
+  Eigen::VectorXd difference(int k, const Function& function) const {
+    constexpr double kStep = 1e-5;  // error kStep^2 times third derivatives of order 1 to 10
+    Eigen::VectorXd up = point_, down = point_;
+    up[k] += kStep;
+    down[k] -= kStep;
+    return (function(up) - function(down)) / (2 * kStep);
+  }
+
+  ReachProblem problem_{RigOptions{}, seed_mold(), {}, {0, 0}};
+  std::unique_ptr<ReachNlp> nlp_;
+  Eigen::VectorXd point_, multipliers_;
+};
+
+constexpr double kDifferenceTolerance = 1e-8;
+
+TEST_P(ReachDerivatives, GradientIsTheDifferenceOfTheObjective) {
+  const Eigen::VectorXd gradient = nlp_->gradient(point_);
+  for (int k = 0; k < nlp_->variables(); ++k) {
+    const auto objective = [&](const Eigen::VectorXd& v) {
+      return Eigen::VectorXd::Constant(1, nlp_->objective(v));
+    };
+    EXPECT_LE(std::abs(difference(k, objective)[0] - gradient[k]), kDifferenceTolerance) << k;
+  }
+  EXPECT_GT(gradient.norm(), 0.01);
+}
+
+TEST_P(ReachDerivatives, JacobianIsTheDifferenceOfTheConstraints) {
+  const Eigen::MatrixXd exact = jacobian(point_);
+  for (int k = 0; k < nlp_->variables(); ++k) {
+    const auto values = [&](const Eigen::VectorXd& v) { return nlp_->constraint_values(v); };
+    EXPECT_LE((difference(k, values) - exact.col(k)).norm(), kDifferenceTolerance) << k;
+    EXPECT_GT(exact.col(k).norm(), 0.01) << k;
+  }
+}
+
+TEST_P(ReachDerivatives, HessianIsTheDifferenceOfTheLagrangiansGradient) {
+  constexpr double kSigma = 0.7;
+  const Eigen::MatrixXd lower =
+      dense(nlp_->hessian_pattern(), nlp_->hessian_values(point_, kSigma, multipliers_), nlp_->variables(),
+            nlp_->variables());
+  EXPECT_EQ(lower.triangularView<Eigen::StrictlyUpper>().toDenseMatrix().norm(), 0);
+  const Eigen::MatrixXd exact = lower.selfadjointView<Eigen::Lower>();
+  for (int k = 0; k < nlp_->variables(); ++k) {
+    const auto gradient = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
+      return kSigma * nlp_->gradient(v) + jacobian(v).transpose() * multipliers_;
+    };
+    EXPECT_LE((difference(k, gradient) - exact.col(k)).norm(), kDifferenceTolerance) << k;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllFormulations, ReachDerivatives,
+                         testing::Values(Formulation{ReachGoal::rms, false},
+                                         Formulation{ReachGoal::rms, true},
+                                         Formulation{ReachGoal::max, false},
+                                         Formulation{ReachGoal::max, true}));
+
+// ---- degenerate problems
+
+TEST(Reach, AnEmptyRigReachesEverything) {
+  const ReachResult result = solve_reach({RigOptions{}, seed_mold(), {}, {0, 0}});
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.floor_rms, 0);
+  EXPECT_EQ(result.floor_max, 0);
+}
+
+TEST(Reach, WithoutInterlinksEveryTargetIsReached) {
+  ReachProblem problem = seed_problem(0.02);
+  problem.rig.interlinks = false;
+  problem.rig.fixed.reset();
+  const ReachResult result = solve_reach(problem);
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.floor_rms, 0);
+  EXPECT_EQ(result.floor_max, 0);
+  ASSERT_EQ(result.positions.size(), 25u);
+  EXPECT_EQ(result.per_gripper, std::vector<double>(25, 0.0));
+  EXPECT_EQ(explain_reach(problem, result), "The rig can put every pad on its target.");
+}
+
+TEST(Reach, AFlatRigReachesFlatTargets) {
+  RigOptions rig = grid(4, 3, 0.1, 0.02);
+  rig.fixed = {2, 2};
+  ReachProblem problem{rig, Mold(PlaneShape{0}, {{-1, -1}, {1, 1}}), {}, rig.place(5)};
+  for (int k = 0; k < rig.count(); ++k) problem.targets.emplace_back(rig.place(k).x(), rig.place(k).y(), 0);
+  const ReachResult result = solve_reach(problem);
+  EXPECT_TRUE(result.converged);
+  EXPECT_LE(result.floor_max, 1e-9);
+  EXPECT_LE(result.link_violation, 1e-12);
+}
+
+// The targets' own joints are fixed: then, and only then, is an inclined plane reached exactly.
+TEST(Reach, AnInclinedPlaneIsReachedWhereTheFixedJointStandsAboveItsTarget) {
+  constexpr double kAngle = 25 * kDegree, kOffset = 0.02;
+  const Mold mold(PlaneShape{kAngle}, {{-1, -1}, {1, 1}});
+  RigOptions rig = grid(3, 3, 0.1, kOffset);
+  rig.fixed = {2, 2};
+  ReachProblem problem{rig, mold, {}, {kOffset * std::sin(kAngle), 0}};
+  for (int k = 0; k < rig.count(); ++k) {
+    problem.targets.push_back(mold.point(rig.place(k).x() * std::cos(kAngle), rig.place(k).y()));
+  }
+  EXPECT_LE(solve_reach(problem).floor_max, 1e-9);
+}
+
+TEST(Reach, AJointFixedAboveItsFlatPlaceMovesThePadDownTheIncline) {
+  constexpr double kAngle = 25 * kDegree, kOffset = 0.02;
+  const Mold mold(PlaneShape{kAngle}, {{-1, -1}, {1, 1}});
+  RigOptions rig = grid(3, 1, 0.1, kOffset);
+  rig.fixed = {2, 1};
+  ReachProblem problem{rig, mold, {}, {0, 0}};
+  for (int k = 0; k < rig.count(); ++k) {
+    problem.targets.push_back(mold.point(rig.place(k).x() * std::cos(kAngle), rig.place(k).y()));
+  }
+  const ReachResult result = solve_reach(problem);
+  ASSERT_TRUE(result.converged) << result.status;
+  EXPECT_LE(std::abs(result.floor_rms - kOffset * std::tan(kAngle)), 1e-9);
+  EXPECT_LE(std::abs(result.floor_max - kOffset * std::tan(kAngle)), 1e-7);
+}
+
+// ---- closed forms
+
+// Joints on the circle R + o, each interlink a chord of it: the outer pads miss the ends of the taut strip by
+// the chord of the excess angle.
+TEST(Reach, ThreeGrippersOverACylinderMissByTheChordOfTheExcessAngle) {
+  constexpr double kRadius = 0.15, kSpacing = 0.1;
+  for (const double offset : {0.0, 0.005, 0.02}) {
+    RigOptions rig = grid(3, 1, kSpacing, offset);
+    rig.fixed = {2, 1};
+    const ReachResult result = solve_reach(strip(rig, cylinder(kRadius), kRadius));
+    ASSERT_TRUE(result.converged) << result.status;
+    const double miss = 2 * kRadius * std::sin(std::abs(excess_angle(kSpacing, kRadius, offset)) / 2);
+    EXPECT_LE(std::abs(result.floor_rms - miss * std::sqrt(2.0 / 3)), 1e-9) << offset;
+    EXPECT_LE(std::abs(result.floor_max - miss), 1e-7) << offset;
+    EXPECT_LE(result.link_violation, kLinkTolerance);
+  }
+}
+
+TEST(Reach, TwoFreeGrippersOnASphereShareTheExcessAngle) {
+  constexpr double kRadius = 0.2, kSpacing = 0.15;
+  for (const double offset : {0.0, 0.01, 0.03}) {
+    const ReachResult result = solve_reach(strip(grid(2, 1, kSpacing, offset), sphere(kRadius), kRadius));
+    ASSERT_TRUE(result.converged) << result.status;
+    const double miss = 2 * kRadius * std::sin(std::abs(excess_angle(kSpacing, kRadius, offset)) / 4);
+    EXPECT_LE(std::abs(result.floor_rms - miss), 1e-9) << offset;
+    EXPECT_LE(std::abs(result.floor_max - miss), 1e-7) << offset;
+  }
+}
+
+TEST(Reach, JointsOverASphereLieOnTheSphereLargerByOffsetAndThickness) {
+  constexpr double kRadius = 0.3;
+  RigOptions rig = grid(3, 3, 0.1, 0.02);
+  rig.fixed = {2, 2};
+  ReachProblem problem{rig, sphere(kRadius), {}, {0, 0}};
+  problem.ply_thickness = 0.001;
+  for (int k = 0; k < rig.count(); ++k) {
+    problem.targets.push_back(problem.mold.point(rig.place(k).x(), rig.place(k).y()));
+  }
+  const ReachResult result = solve_reach(problem);
+  ASSERT_TRUE(result.converged) << result.status;
+  for (const Eigen::Vector3d& joint : result.joints) EXPECT_LE(std::abs(joint.norm() - 0.321), 1e-12);
+  for (const Eigen::Vector3d& pad : result.positions) EXPECT_LE(std::abs(pad.norm() - kRadius), 1e-12);
+  EXPECT_LE(result.joints[4].head<2>().norm(), 1e-9);
+  EXPECT_LE(result.link_violation, 1e-9);
+}
+
+// A strip of fibre over a cylinder needs interlinks as long as the chords of the joints' circle.
+TEST(Reach, TheBestInterlinkOverACylinderIsTheChordBetweenTheJointsOfTheTargets) {
+  constexpr double kRadius = 0.15, kSpacing = 0.1, kOffset = 0.02;
+  RigOptions rig = grid(3, 1, kSpacing, kOffset);
+  rig.fixed = {2, 1};
+  const ReachResult result = solve_reach(strip(rig, cylinder(kRadius), kRadius));
+  const double chord = 2 * (kRadius + kOffset) * std::sin(kSpacing / (2 * kRadius));
+  EXPECT_LE(std::abs(result.causes.link_scale - chord / kSpacing), 1e-6);
+  EXPECT_LE(result.causes.rms_rescaled, 1e-7);
+  const double flush = 2 * kRadius * std::sin(std::abs(excess_angle(kSpacing, kRadius, 0)) / 2);
+  EXPECT_LE(std::abs(result.causes.rms_flush - flush * std::sqrt(2.0 / 3)), 1e-9);
+}
+
+TEST(Reach, APadSteeperThanItsTiltLimitStopsAtTheLimit) {
+  constexpr double kRadius = 0.2;
+  RigOptions rig = grid(1, 1, 0.1, 0.005);
+  rig.tilt_limit = 30 * kDegree;
+  ReachProblem problem{rig, sphere(kRadius), {}, {0, 0}};
+  problem.targets.push_back(problem.mold.point(kRadius * std::sin(40 * kDegree), 0));
+  const ReachResult result = solve_reach(problem);
+  ASSERT_TRUE(result.converged) << result.status;
+  EXPECT_LE(std::abs(result.floor_rms - 2 * kRadius * std::sin(5 * kDegree)), 1e-7);
+  problem.rig.tilt_limit = 45 * kDegree;
+  EXPECT_EQ(solve_reach(problem).floor_rms, 0);
+}
+
+// ---- the seed's rig
+
+TEST(Reach, TenRandomStartsOnTheSeedsMoldFindTheSameFloor) {
+  for (const double offset : {0.0, 0.02}) {
+    const ReachResult result = solve_reach(seed_problem(offset), 10);
+    ASSERT_TRUE(result.converged) << result.status;
+    EXPECT_LE(result.start_spread, 1e-7);
+    EXPECT_LE(result.start_spread_max, 1e-7);
+    EXPECT_LE(result.link_violation, kLinkTolerance);
+    EXPECT_GT(result.floor_rms, 0.001);
+  }
+}
+
+TEST(Reach, TheTwoFloorsBoundEachOther) {
+  const ReachProblem problem = seed_problem();
+  const ReachResult result = solve_reach(problem);
+  ASSERT_TRUE(result.converged) << result.status;
+  double squares = 0, largest = 0;
+  for (const double distance : result.per_gripper) {
+    squares += distance * distance;
+    largest = std::max(largest, distance);
+  }
+  EXPECT_LE(std::abs(std::sqrt(squares / 25) - result.floor_rms), 1e-9);
+  EXPECT_LE(result.floor_rms, result.floor_max);
+  EXPECT_LE(result.floor_max, largest);
+  EXPECT_LE((result.joints[12].head<2>() - problem.fixed_place).norm(), 1e-9);
+  EXPECT_LE(result.causes.rms_unfixed, result.floor_rms);
+  EXPECT_LE(result.causes.rms_rescaled, result.floor_rms);
+}
+
+TEST(Reach, TheSolutionTurnsWithTheScene) {
+  // The seed's mold turned by 90 degrees about the vertical axis: x' = -y, y' = x.
+  const ReachProblem original = seed_problem();
+  ReachProblem turned = original;
+  PolynomialShape shape;
+  for (const auto& [i, j, c] : std::get<PolynomialShape>(original.mold.shape()).terms) {
+    shape.terms.push_back({j, i, j % 2 == 1 ? -c : c});
+  }
+  turned.mold = Mold(shape, {{-0.45, 0}, {0, 0.45}});
+  for (Eigen::Vector3d& t : turned.targets) t = {-t.y(), t.x(), t.z()};
+  turned.fixed_place = {-original.fixed_place.y(), original.fixed_place.x()};
+  const ReachResult a = solve_reach(original), b = solve_reach(turned);
+  ASSERT_TRUE(a.converged && b.converged);
+  EXPECT_LE(std::abs(a.floor_rms - b.floor_rms), 1e-9);
+  EXPECT_LE(std::abs(a.floor_max - b.floor_max), 1e-8);
+}
+
+// Second-order sufficient condition: the Lagrangian's Hessian is positive on the null space of the Jacobian.
+TEST(Reach, TheBestPositionOnTheSeedsMoldIsAStrictMinimum) {
+  ReachProblem problem = seed_problem();
+  problem.rig.tilt_limit = std::numbers::pi / 2;  // no inequalities
+  const ReachNlp nlp(problem, ReachGoal::rms);
+  std::vector<Eigen::Vector2d> places;
+  for (const Eigen::Vector3d& t : problem.targets) places.emplace_back(t.head<2>());
+  const IpoptOutcome outcome = minimise(nlp, nlp.variables_at(places));
+  ASSERT_TRUE(outcome.converged) << outcome.status;
+
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(nlp.constraints(), nlp.variables());
+  const Eigen::VectorXd j = nlp.jacobian_values(outcome.variables);
+  for (int k = 0; k < j.size(); ++k) {
+    const auto [row, column] = nlp.jacobian_pattern()[size_t(k)];
+    jacobian(row, column) += j[k];
+  }
+  const Eigen::VectorXd gradient = nlp.gradient(outcome.variables);
+  const Eigen::VectorXd multipliers = jacobian.transpose().colPivHouseholderQr().solve(-gradient);
+  EXPECT_LE((gradient + jacobian.transpose() * multipliers).norm(), 1e-9);
+
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(nlp.variables(), nlp.variables());
+  const Eigen::VectorXd h = nlp.hessian_values(outcome.variables, 1, multipliers);
+  for (int k = 0; k < h.size(); ++k) {
+    const auto [row, column] = nlp.hessian_pattern()[size_t(k)];
+    hessian(row, column) += h[k];
+    if (row != column) hessian(column, row) += h[k];
+  }
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(jacobian);
+  const Eigen::MatrixXd kernel = lu.kernel();
+  ASSERT_EQ(kernel.cols(), 8);  // 50 coordinates, 40 interlinks, 2 of the fixed joint
+  const Eigen::MatrixXd basis = Eigen::HouseholderQR<Eigen::MatrixXd>(kernel).householderQ() *
+                                Eigen::MatrixXd::Identity(kernel.rows(), kernel.cols());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> reduced(basis.transpose() * hessian * basis);
+  EXPECT_GT(reduced.eigenvalues().minCoeff(), 0.01);
+}
+
+// ---- what cannot be done
+
+TEST(Reach, InterlinksLongerThanTheSphereAreReportedAsInfeasible) {
+  ReachProblem problem = strip(grid(2, 2, 0.1, 0.005), sphere(0.1), 0.1);
+  problem.rig.spacing = 1.0;
+  problem.targets.assign(4, {0, 0, 0.1});
+  const ReachResult result = solve_reach(problem);
+  EXPECT_FALSE(result.converged);
+  EXPECT_FALSE(result.status.empty());
+  EXPECT_TRUE(std::isnan(result.floor_rms) && std::isnan(result.floor_max));
+  EXPECT_GT(result.link_violation, 0.5);
+  EXPECT_NE(explain_reach(problem, result).find("No position"), std::string::npos);
+}
+
+TEST(Reach, UnsoundInputIsAStatus) {
+  ReachProblem problem = seed_problem();
+  problem.targets.pop_back();
+  EXPECT_EQ(solve_reach(problem).status, "24 targets for 25 grippers");
+  problem = seed_problem();
+  problem.targets[7].x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(solve_reach(problem).status, "the mold is not defined at the target of gripper (3, 2)");
+  problem = seed_problem();
+  problem.rig.fixed = {6, 1};
+  EXPECT_EQ(solve_reach(problem).status, "the fixed gripper is not one of the rig");
+  problem = seed_problem();
+  problem.rig.spacing = 0;
+  const ReachResult result = solve_reach(problem);
+  EXPECT_FALSE(result.converged);
+  EXPECT_TRUE(std::isnan(result.floor_max));
+}
+
+// ---- repeatability
+
+TEST(Reach, ConcurrentCallsGiveTheSameBits) {
+  const ReachProblem problem = seed_problem();
+  const ReachResult alone = solve_reach(problem);
+  std::vector<ReachResult> results(3);
+  {
+    std::vector<std::jthread> threads;
+    for (ReachResult& result : results) threads.emplace_back([&] { result = solve_reach(problem); });
+  }
+  for (const ReachResult& result : results) {
+    EXPECT_EQ(result.floor_rms, alone.floor_rms);
+    EXPECT_EQ(result.floor_max, alone.floor_max);
+    EXPECT_EQ(result.per_gripper, alone.per_gripper);
+  }
+}
+
+// ---- words
+
+TEST(Reach, TheExplanationNamesTheFloorTheWorstGripperAndTheCause) {
+  constexpr double kRadius = 0.15;
+  RigOptions rig = grid(3, 1, 0.1, 0.02);
+  rig.fixed = {2, 1};
+  const ReachProblem problem = strip(rig, cylinder(kRadius), kRadius);
+  const std::string text = explain_reach(problem, solve_reach(problem));
+  EXPECT_NE(text.find(" mm (largest distance)"), std::string::npos) << text;
+  EXPECT_TRUE(text.find("gripper (1, 1)") != std::string::npos ||
+              text.find("gripper (3, 1)") != std::string::npos)
+      << text;
+  EXPECT_NE(text.find("joint offset causes most"), std::string::npos) << text;
+  EXPECT_NE(text.find("instead of 100.0 mm"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace drapeplan
