@@ -247,7 +247,7 @@ void visit_fem(FieldVisitor& v, FemOptions& f) {
            &f.section_points,
            "Through the thickness",
            Dimension::none,
-           {1, 5, false, false, {1, 3, 5}}});
+           {1, 5, false, false, true}});
   v.field({"mass_scaling", &f.mass_scaling, "Factor on the mass; gravity acts on the unscaled mass",
            Dimension::none, from(1, 1e6)});
   v.field({"time_scaling", &f.time_scaling, "The schedule is played this many times faster than written",
@@ -368,27 +368,20 @@ void visit_case(FieldVisitor& v, CaseFields& fields) {
 }
 
 bool Range::holds(double value) const {
-  if (!only.empty()) return std::find(only.begin(), only.end(), value) != only.end();
+  if (odd && std::fmod(value, 2) != 1) return false;
   return (lowest_excluded ? value > lowest : value >= lowest) &&
          (highest_excluded ? value < highest : value <= highest);
 }
 
 std::string range_text(const Range& range, Dimension dimension) {
   const auto text = [dimension](double value) { return format_quantity(value, dimension); };
-  if (!range.only.empty()) {
-    std::string list;
-    for (size_t k = 0; k < range.only.size(); ++k) {
-      if (k > 0) list += k + 1 == range.only.size() ? " or " : ", ";
-      list += std::to_string(range.only[k]);
-    }
-    return list;
-  }
   std::string limits;
   if (std::isfinite(range.lowest)) limits = (range.lowest_excluded ? "> " : ">= ") + text(range.lowest);
   if (std::isfinite(range.highest)) {
     limits += (limits.empty() ? "" : " and ") + std::string(range.highest_excluded ? "< " : "<= ") +
               text(range.highest);
   }
+  if (range.odd) limits += ", odd";
   return limits;
 }
 

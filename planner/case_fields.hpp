@@ -23,7 +23,7 @@ struct Range {
   double highest = std::numeric_limits<double>::infinity();
   bool lowest_excluded = false;
   bool highest_excluded = false;
-  std::vector<int> only = {};  ///< if not empty: these numbers and no others
+  bool odd = false;  ///< only odd whole numbers
 
   [[nodiscard]] bool holds(double value) const;  ///< false for NaN
 };

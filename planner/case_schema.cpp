@@ -42,11 +42,16 @@ json number_schema(const Field& field) {
     }
     return schema;
   }
-  std::string units;
-  for (const Unit& unit : words_of(field.dimension).units)
-    units += (units.empty() ? "" : "|") + literal(unit.name);
+  std::string pattern = R"(^\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\s*)";
+  char separator = '(';
+  for (const Unit& unit : words_of(field.dimension).units) {
+    pattern += separator;
+    pattern += literal(unit.name);
+    separator = '|';
+  }
+  pattern += R"()\s*$)";
   schema["type"] = "string";
-  schema["pattern"] = "^\\s*[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?\\s*(" + units + ")\\s*$";
+  schema["pattern"] = pattern;
   return schema;
 }
 
@@ -57,7 +62,12 @@ json fixed_list(json items, size_t size) {
 json integer_schema(const Field& field) {
   json schema = number_schema(field);
   schema["type"] = "integer";
-  if (!field.range.only.empty()) schema = {{"enum", field.range.only}};
+  if (field.range.odd) {
+    json allowed = json::array();
+    for (int value = int(field.range.lowest); value <= int(field.range.highest); value += 2)
+      allowed.push_back(value);
+    schema = {{"enum", std::move(allowed)}};
+  }
   return schema;
 }
 

@@ -34,7 +34,8 @@ void add_common_options(CLI::App& verb, CommonOptions& options) {
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
   verb.add_option("--seed", options.seed, "seed of all random numbers (default: the case's)")->type_name("N");
-  verb.add_option("--set", options.overrides, "changes one field, e.g. --set ply.width=\"400 mm\" (repeatable)")
+  verb.add_option("--set", options.overrides,
+                  "changes one field, e.g. --set ply.width=\"400 mm\" (repeatable)")
       ->type_name("PATH=VALUE")
       ->expected(1)
       ->take_all()
@@ -54,7 +55,8 @@ std::optional<Case> load_case(const std::string& file, const CommonOptions& opti
   if (reading.errors.empty()) {
     for (const std::string& need : needs) {
       if (has_section(reading.value, need)) continue;
-      reading.errors.push_back({file, 0, "", "this verb needs the section \"" + need + "\", which is absent"});
+      reading.errors.push_back(
+          {file, 0, "", "this verb needs the section \"" + need + "\", which is absent"});
     }
   }
   if (!reading.errors.empty()) {
@@ -82,7 +84,8 @@ int deliver(const nlohmann::json& result, const std::string& text, const CommonO
     return kNotFinished;
   }
   bool written = write_json(folder / "result.json", result);
-  if (resolved != nullptr) written = write_json(folder / "resolved.json", resolved_case(*resolved)) && written;
+  if (resolved != nullptr)
+    written = write_json(folder / "resolved.json", resolved_case(*resolved)) && written;
   return written ? kDone : kNotFinished;
 }
 

@@ -38,8 +38,8 @@ void add_reach(CLI::App& program, Action& action);
 
 void add_common_options(CLI::App& verb, CommonOptions& options);
 
-/// The case in `file` with the overrides (and the seed) of the command line. If something is wrong with it, all
-/// errors go to stderr and nothing is returned.
+/// The case in `file` with the overrides (and the seed) of the command line. If something is wrong with it,
+/// all errors go to stderr and nothing is returned.
 /// @param needs  sections that the verb cannot do without: "mapping", "grippers", "material", "mold".
 std::optional<Case> load_case(const std::string& file, const CommonOptions& options,
                               const std::vector<std::string>& needs = {});
@@ -47,8 +47,9 @@ std::optional<Case> load_case(const std::string& file, const CommonOptions& opti
 /// Prints errors to stderr, one per line, and how many there are.
 void print_errors(const std::vector<InputError>& errors);
 
-/// The result as text for people, or as JSON with --json; and result.json (with resolved.json if there is a case)
-/// under --out. @return kDone, or kNotFinished if a file could not be written (the reason goes to stderr).
+/// The result as text for people, or as JSON with --json; and result.json (with resolved.json if there is a
+/// case) under --out. @return kDone, or kNotFinished if a file could not be written (the reason goes to
+/// stderr).
 int deliver(const nlohmann::json& result, const std::string& text, const CommonOptions& options,
             const Case* resolved = nullptr);
 

@@ -54,7 +54,8 @@ int explain(const std::string& path, const CommonOptions& options) {
 }  // namespace
 
 void add_check(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("check", "reads case files and lists everything that is wrong with them");
+  CLI::App* verb =
+      program.add_subcommand("check", "reads case files and lists everything that is wrong with them");
   const auto options = std::make_shared<CheckOptions>();  // lives as long as CLI11 keeps the callback
   verb->add_option("CASE", options->files, "case files")->required();
   add_common_options(*verb, options->common);

@@ -18,7 +18,9 @@ struct MapOptions {
   std::string file;
 };
 
-json point_json(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+json point_json(const Eigen::Vector3d& p) {
+  return {p.x(), p.y(), p.z()};
+}
 
 json points_json(const std::vector<Eigen::Vector3d>& points) {
   json list = json::array();
@@ -49,7 +51,8 @@ std::string millimetres(const std::string& label, const Eigen::Vector3d& p) {
 
 std::string result_text(const Case& value, const MapResult& map) {
   char line[160];
-  std::snprintf(line, sizeof line, "%s: shear angle largest %.2f deg, mean %.2f deg; net of %zu x %zu cells\n\n",
+  std::snprintf(line, sizeof line,
+                "%s: shear angle largest %.2f deg, mean %.2f deg; net of %zu x %zu cells\n\n",
                 value.name.substr(0, 60).c_str(), map.max_shear_deg, map.mean_shear_deg, map.net.u.size() - 1,
                 map.net.v.size() - 1);
   std::string text = line;
@@ -58,9 +61,9 @@ std::string result_text(const Case& value, const MapResult& map) {
   for (size_t k = 0; k < map.corners.size(); ++k) text += millimetres(corners[k], map.corners[k]);
   for (size_t k = 0; k < map.targets.size(); ++k) {
     const int columns = value.grippers->columns;
-    text += millimetres("gripper " + std::to_string(1 + int(k) % columns) + "," +
-                            std::to_string(1 + int(k) / columns),
-                        map.targets[k]);
+    text += millimetres(
+        "gripper " + std::to_string(1 + int(k) % columns) + "," + std::to_string(1 + int(k) / columns),
+        map.targets[k]);
   }
   return text;
 }

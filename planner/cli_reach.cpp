@@ -24,22 +24,18 @@ struct ReachOptions {
 json result_json(const ReachProblem& problem, const ReachResult& reach) {
   json positions = json::array();
   for (const Eigen::Vector3d& p : reach.positions) positions.push_back({p.x(), p.y(), p.z()});
-  return {{"floor_max", reach.floor_max},
-          {"floor_rms", reach.floor_rms},
-          {"per_gripper", reach.per_gripper},
-          {"positions", std::move(positions)},
-          {"link_violation", reach.link_violation},
-          {"start_spread", reach.start_spread},
-          {"converged", reach.converged},
-          {"status", reach.status},
-          {"wall_seconds", reach.wall_seconds},
-          {"meaning", explain_reach(problem, reach)}};
+  return {{"floor_max", reach.floor_max},           {"floor_rms", reach.floor_rms},
+          {"per_gripper", reach.per_gripper},       {"positions", std::move(positions)},
+          {"link_violation", reach.link_violation}, {"start_spread", reach.start_spread},
+          {"converged", reach.converged},           {"status", reach.status},
+          {"wall_seconds", reach.wall_seconds},     {"meaning", explain_reach(problem, reach)}};
 }
 
 /// The distances as a map of the grid, seen from above: j upwards, i to the right.
 std::string result_text(const ReachProblem& problem, const ReachResult& reach) {
   char cell[80];
-  std::snprintf(cell, sizeof cell, "smallest possible distance to the targets: r.m.s. %.2f mm, largest %.2f mm\n\n",
+  std::snprintf(cell, sizeof cell,
+                "smallest possible distance to the targets: r.m.s. %.2f mm, largest %.2f mm\n\n",
                 1e3 * reach.floor_rms, 1e3 * reach.floor_max);
   std::string text = cell;
   text += "  distance [mm] of gripper (i, j) at the r.m.s. optimum\n";
@@ -91,8 +87,8 @@ int reach(const ReachOptions& options) {
 }  // namespace
 
 void add_reach(CLI::App& program, Action& action) {
-  CLI::App* verb =
-      program.add_subcommand("reach", "how close the grippers can come to their targets, whatever the schedule");
+  CLI::App* verb = program.add_subcommand(
+      "reach", "how close the grippers can come to their targets, whatever the schedule");
   const auto options = std::make_shared<ReachOptions>();  // lives as long as CLI11 keeps the callback
   verb->add_option("CASE", options->file, "case file")->required();
   add_common_options(*verb, options->common);
