@@ -1,12 +1,13 @@
 #include "planner/case_checks.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <set>
 
 namespace drapeplan {
 namespace {
 
-constexpr double kSlack = 1e-9;     // [m], so that a point on the ply's edge is on the ply
+constexpr double kSlack = 1e-9;     // [m] or cells, so that what fits exactly fits
 constexpr double kMostCells = 4e6;  // of a net or mesh; far above use, below what fills the memory
 
 bool on_ply(const Ply& ply, const Eigen::Vector2d& place) {
@@ -27,7 +28,7 @@ void check_on_ply(CaseReader& reader, const std::string& pointer, const Ply& ply
 }
 
 void check_cells(CaseReader& reader, const std::string& pointer, const Ply& ply, double size) {
-  const double cells = std::ceil(ply.width / size) * std::ceil(ply.height / size);
+  const double cells = std::ceil(ply.width / size - kSlack) * std::ceil(ply.height / size - kSlack);
   if (reader.good(pointer) && !(cells <= kMostCells)) {
     reader.fail(pointer, "would make " + format_number(cells) +
                              " cells of this ply; allowed: " + format_number(kMostCells));

@@ -178,6 +178,12 @@ InputError CaseDocument::error_at(const std::string& pointer, std::string messag
   const Source& source = source_of(pointer);
   if (source.override_text) return {source.file, 0, pointer, std::move(message)};
   const std::string inside = pointer.substr(source.prefix.size());
+  if (!source.lines.contains(inside)) {  // not in the file: perhaps an override of something below made it
+    for (const Source& other : sources_) {
+      if (other.override_text && lies_in(other.prefix, pointer))
+        return {other.file, 0, pointer, std::move(message)};
+    }
+  }
   for (std::string place = inside;; place.erase(place.rfind('/'))) {
     const auto line = source.lines.find(place);
     if (line != source.lines.end()) return {source.file, line->second, inside, std::move(message)};

@@ -144,9 +144,8 @@ class SchemaWriter : public FieldVisitor {
 
   void alternative(const std::string& selector, const std::string& word, bool selected,
                    const std::function<void()>& visit) override {
-    const bool outer = !frames_.empty();
-    json& here = outer ? frames_.back() : root;
-    json then = object(visit);
+    json then = object(visit);  // before `here`: it moves the frames
+    json& here = frames_.empty() ? root : frames_.back();
     for (auto& [name, schema] : then["properties"].items()) {
       json& merged = here["properties"][name];
       json words = merged.is_object() ? merged["x-only-with"] : json::array();
@@ -157,7 +156,7 @@ class SchemaWriter : public FieldVisitor {
     // A selector that is not stated chooses the default alternative.
     json condition = {{"properties", {{selector, {{"const", word}}}}}};
     if (!selected || here["properties"][selector].value("default", "") != word)
-      condition["required"] = {selector};
+      condition["required"] = json::array({selector});
     if (then.contains("required")) {
       here["allOf"].push_back({{"if", condition}, {"then", {{"required", then["required"]}}}});
     }

@@ -106,7 +106,8 @@ std::string unit_fault(std::string_view name, Dimension dimension) {
 
 std::optional<double> parse_quantity(std::string_view text, Dimension dimension, std::string& fault) {
   const std::string_view whole = trimmed(text);
-  const size_t sign = !whole.empty() && whole.front() == '+' ? 1 : 0;  // from_chars takes no plus
+  const bool plus = whole.size() > 1 && whole[0] == '+' && whole[1] != '-';
+  const size_t sign = plus ? 1 : 0;  // from_chars takes no plus
   double number = 0;
   const auto [end, error] = std::from_chars(whole.data() + sign, whole.data() + whole.size(), number);
   if (error == std::errc::result_out_of_range) {

@@ -40,8 +40,10 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
     const int distance = edit_distance(wanted, lower_case(candidate));
     const bool similar = 3 * distance <= int(std::max(word.size(), candidate.size()));
     const bool one_typing_error = distance == 1 && word.size() > 1;
-    if ((similar || one_typing_error) && (smallest < 0 || distance < smallest)) {
-      smallest = distance;
+    // Of equally near words, one of the same length is more often meant ("mn": "mm", not "m").
+    const int rank = 2 * distance + (candidate.size() == word.size() ? 0 : 1);
+    if ((similar || one_typing_error) && (smallest < 0 || rank < smallest)) {
+      smallest = rank;
       nearest = candidate;
     }
   }

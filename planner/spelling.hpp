@@ -12,7 +12,8 @@ namespace drapeplan {
 int edit_distance(std::string_view a, std::string_view b);
 
 /// The candidate with the smallest edit distance to `word`, or empty if none is similar enough to be meant
-/// (more than a third of the longer word differs). Upper and lower case count as equal. First one wins a tie.
+/// (more than a third of the longer word differs). Upper and lower case count as equal. One of the same
+/// length wins a tie, then the first one.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates);
 
 /// `"a", "b" or "c"`.

@@ -212,7 +212,7 @@ TEST(CaseFile, AMissingFileIsAnErrorWithItsName) {
 }
 
 TEST(CaseFile, MutatedBytesNeverCrashTheReader) {
-  const std::string original = text_of(kCases / "flexdraper-quick.json");
+  const std::string original = resolved_case(good_case(kCases / "flexdraper-quick.json")).dump(1);
   std::mt19937 random(20240611);
   const std::string pieces[] = {"{",  "}",    "[", "]",     ",",    ":",  "\"",
                                 "\\", "null", "-", "1e400", "\xff", "mm", "0"};
