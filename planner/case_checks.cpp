@@ -30,8 +30,8 @@ void check_on_ply(CaseReader& reader, const std::string& pointer, const Ply& ply
 void check_cells(CaseReader& reader, const std::string& pointer, const Ply& ply, double size) {
   const double cells = std::ceil(ply.width / size - kSlack) * std::ceil(ply.height / size - kSlack);
   if (reader.good(pointer) && !(cells <= kMostCells)) {
-    reader.fail(pointer, "would make " + format_number(cells) +
-                             " cells of this ply; allowed: " + format_number(kMostCells));
+    reader.fail(pointer, "would make " + std::to_string(std::int64_t(cells)) +
+                             " cells of this ply; allowed: " + std::to_string(std::int64_t(kMostCells)));
   }
 }
 
