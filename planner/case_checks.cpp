@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <set>
 
+#include "planner/json_text.hpp"
+
 namespace drapeplan {
 namespace {
 
@@ -101,7 +103,7 @@ void check_case(const CaseFields& fields, CaseReader& reader) {
   check_on_ply(reader, "/schedule/wave/start", c.ply, c.schedule.wave_start);
   if (reader.good("/fem")) check_cells(reader, "/fem/mesh_size", c.ply, fields.fem.mesh_size);
   for (const auto& [name, options] : c.fidelities) {
-    check_cells(reader, "/fidelities/" + name + "/mesh_size", c.ply, options.mesh_size);
+    check_cells(reader, "/fidelities" + pointer_token(name) + "/mesh_size", c.ply, options.mesh_size);
   }
 }
 

@@ -215,7 +215,9 @@ json table_rows(const Table& table) {
     std::vector<double> numbers;
     for (const double value : *columns[k]) {
       const std::string text = format_quantity(value, dimensions[k]);
-      if (text.ends_with(' ' + words.units[words.preferred].name)) numbers.push_back(std::stod(text));
+      if (text.ends_with(' ' + words.units[words.preferred].name)) {
+        numbers.push_back(json::parse(text.substr(0, text.find(' '))).get<double>());
+      }
     }
     const bool exact = numbers.size() == count;
     rows[0].push_back(words.units[exact ? words.preferred : 0].name);

@@ -146,6 +146,15 @@ TEST(CaseFile, FemIsTheReportingFidelityAndTheStartOfTheOthers) {
   EXPECT_EQ(value.fidelities.at("screen").section_points, 5);
 }
 
+TEST(CaseFile, FidelitiesMayHaveAnyName) {
+  Case value = good_case(kCases / "flexdraper-5x5.json");
+  value.fidelities["~2/a.b \xc3\xa9"].mesh_size = 0.02;
+  value.material.shear.stress[1] = 1e-310;  // denormal: text must not refuse it
+  const ScratchFile echo(resolved_case(value).dump());
+  EXPECT_EQ(good_case(echo.path).fidelities.at("~2/a.b \xc3\xa9").mesh_size, 0.02);
+  EXPECT_EQ(good_case(echo.path).material.shear.stress[1], 1e-310);
+}
+
 TEST(CaseFile, APolynomialMayBeStatedInMillimetres) {
   // z/mm = 0.01 (x/mm)^2 is z = 10/m x^2.
   const Case value = good_case(kCases / "flexdraper-5x5.json",
@@ -249,6 +258,7 @@ TEST(CaseFile, MutatedBytesNeverCrashTheReader) {
 TEST(Quantity, NumbersAreTheNearestDoublesOfTheDecimal) {
   std::string fault;
   EXPECT_EQ(parse_quantity("0.3 mm", Dimension::length, fault), 0.0003);
+  EXPECT_EQ(parse_quantity("9 mm", Dimension::length, fault), 9 / 1e3);  // unlike 9 * 1e-3
   EXPECT_EQ(parse_quantity("314 g/m^2", Dimension::areal_density, fault), 0.314);
   EXPECT_EQ(parse_quantity("10N/mm", Dimension::line_stiffness, fault), 1e4);
   EXPECT_EQ(parse_quantity("+1.2e-3 m", Dimension::length, fault), 0.0012);
