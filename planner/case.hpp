@@ -59,12 +59,19 @@ struct Probe {
   Eigen::Vector2d place{0, 0};  ///< (u, v) [m]
 };
 
+/// Where the figures of the material come from, in words; all may be empty.
+struct MaterialNotes {
+  std::string name, source;
+  std::string tension_source, compression_source, shear_source;
+};
+
 /// Sections that are absent in the file are absent here, and so is their physics.
 struct Case {
   std::string name;
   std::string description;
   Ply ply;
-  Fabric material;
+  Fabric material;                          ///< thickness 0: no `material` section, nothing can be simulated
+  MaterialNotes material_notes;
   double start_height = 0;                  ///< height of the flat ply without grippers [m]
   std::optional<Mold> mold;
   std::optional<double> friction;           ///< Coulomb coefficient between ply and mold

@@ -1,0 +1,110 @@
+#include "planner/case_checks.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <set>
+
+#include "planner/json_text.hpp"
+
+namespace drapeplan {
+namespace {
+
+constexpr double kSlack = 1e-9;     // [m] or cells, so that what fits exactly fits
+constexpr double kMostCells = 4e6;  // of a net or mesh; far above use, below what fills the memory
+
+bool on_ply(const Ply& ply, const Eigen::Vector2d& place) {
+  return std::abs(place.x()) <= 0.5 * ply.width + kSlack && std::abs(place.y()) <= 0.5 * ply.height + kSlack;
+}
+
+std::string ply_text(const Ply& ply) {
+  return "the ply reaches from (" + format_quantity(-0.5 * ply.width, Dimension::length) + ", " +
+         format_quantity(-0.5 * ply.height, Dimension::length) + ") to (" +
+         format_quantity(0.5 * ply.width, Dimension::length) + ", " +
+         format_quantity(0.5 * ply.height, Dimension::length) + ")";
+}
+
+void check_on_ply(CaseReader& reader, const std::string& pointer, const Ply& ply,
+                  const Eigen::Vector2d& place) {
+  if (reader.good(pointer) && !on_ply(ply, place))
+    reader.fail(pointer, "lies outside the ply; " + ply_text(ply));
+}
+
+void check_cells(CaseReader& reader, const std::string& pointer, const Ply& ply, double size) {
+  const double cells = std::ceil(ply.width / size - kSlack) * std::ceil(ply.height / size - kSlack);
+  if (reader.good(pointer) && !(cells <= kMostCells)) {
+    reader.fail(pointer, "would make " + std::to_string(std::int64_t(cells)) +
+                             " cells of this ply; allowed: " + std::to_string(std::int64_t(kMostCells)));
+  }
+}
+
+void check_mapping(const CaseFields& fields, CaseReader& reader) {
+  const auto& mapping = fields.value.mapping;
+  if (!mapping || !reader.good("/mapping")) return;
+  check_cells(reader, reader.good("/mapping/cell_size") ? "/mapping/cell_size" : "/mapping", fields.value.ply,
+              mapping->cell_size);
+  check_on_ply(reader, "/mapping/ply_start", fields.value.ply, mapping->ply_start);
+  if (!fields.mold || !reader.good("/mold")) return;
+  const Extent& extent = fields.mold->extent;
+  const bool inside = (mapping->start.array() >= extent.lower.array()).all() &&
+                      (mapping->start.array() <= extent.upper.array()).all();
+  if (inside) return;
+  const bool stated = reader.good("/mapping/start");
+  reader.fail(stated ? "/mapping/start" : "/ply",
+              std::string(stated ? "lies" : "its position, where the mapping starts, lies") +
+                  " outside the mold's extent");
+}
+
+void check_grippers(const CaseFields& fields, CaseReader& reader) {
+  if (!fields.value.grippers || !reader.good("/grippers")) return;
+  const RigOptions& rig = *fields.value.grippers;
+  if (reader.good("/ply") && !on_ply(fields.value.ply, rig.place(0))) {
+    const Eigen::Vector2d place = rig.place(rig.count() - 1);
+    reader.fail("/grippers/spacing",
+                "gripper [" + std::to_string(rig.columns) + ", " + std::to_string(rig.rows) +
+                    "] is off the ply: its pad's centre lies at (" +
+                    format_quantity(place.x(), Dimension::length) + ", " +
+                    format_quantity(place.y(), Dimension::length) + "); " + ply_text(fields.value.ply));
+  }
+  if (rig.count() > 1 && rig.spacing < 2 * rig.pad_radius) {
+    reader.fail("/grippers/spacing", "the pads overlap; allowed: at least twice pad_radius, " +
+                                         format_quantity(2 * rig.pad_radius, Dimension::length));
+  }
+  if (!rig.fixed) return;
+  const auto [i, j] = *rig.fixed;
+  if (i < 1 || i > rig.columns || j < 1 || j > rig.rows) {
+    reader.fail("/grippers/fixed", "there is no such gripper; allowed: [1, 1] to [" +
+                                       std::to_string(rig.columns) + ", " + std::to_string(rig.rows) + "]");
+  }
+}
+
+void check_probes(const CaseFields& fields, CaseReader& reader) {
+  std::set<std::string> names;
+  for (size_t k = 0; k < fields.value.probes.size(); ++k) {
+    const Probe& probe = fields.value.probes[k];
+    const std::string pointer = "/probes/" + std::to_string(k);
+    if (reader.good(pointer + "/name") && !names.insert(probe.name).second) {
+      reader.fail(pointer + "/name", "another probe has the same name");
+    }
+    if (reader.good("/ply")) check_on_ply(reader, pointer + "/place", fields.value.ply, probe.place);
+  }
+}
+
+}  // namespace
+
+void check_case(const CaseFields& fields, CaseReader& reader) {
+  const Case& c = fields.value;
+  check_grippers(fields, reader);
+  check_probes(fields, reader);
+  if (reader.good("/optimise") && c.optimise.longest_sequence < c.optimise.shortest_stroke) {
+    reader.fail("/optimise", "longest_sequence is shorter than shortest_stroke");
+  }
+  if (!reader.good("/ply")) return;
+  check_mapping(fields, reader);
+  check_on_ply(reader, "/schedule/wave/start", c.ply, c.schedule.wave_start);
+  if (reader.good("/fem")) check_cells(reader, "/fem/mesh_size", c.ply, fields.fem.mesh_size);
+  for (const auto& [name, options] : c.fidelities) {
+    check_cells(reader, "/fidelities" + pointer_token(name) + "/mesh_size", c.ply, options.mesh_size);
+  }
+}
+
+}  // namespace drapeplan

@@ -1,0 +1,388 @@
+#include "planner/case_fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace drapeplan {
+namespace {
+
+constexpr double kRightAngle = std::numbers::pi / 2;
+constexpr double kLargestLength = 20;  // [m]; beyond it a unit was mistaken
+
+Range positive(double highest = Range().highest) {
+  return {0, highest, true};
+}
+Range from(double lowest, double highest = Range().highest) {
+  return {lowest, highest};
+}
+
+template <class Enum>
+Choice choice(Enum& target, std::vector<std::string> words) {
+  return {std::move(words), [&target] { return int(target); },
+          [&target](int index) { target = Enum(index); }};
+}
+
+template <class Item, class Visit>
+ObjectList object_list(std::string name, std::string doc, std::vector<Item>& items, Visit visit) {
+  ObjectList list{std::move(name), std::move(doc)};
+  list.size = items.size();
+  list.resize = [&items](size_t size) { items.resize(size); };
+  list.visit = [&items, visit](size_t index) { visit(items[index]); };
+  return list;
+}
+
+/// A section whose absence is the absence of its physics.
+template <class Value, class Visit>
+void optional_section(FieldVisitor& visitor, const Section& section, std::optional<Value>& slot, Value start,
+                      Visit visit) {
+  Value value = slot.value_or(std::move(start));
+  const bool present = visitor.section(section, slot.has_value(), [&] { visit(value); });
+  slot.reset();
+  if (present) slot = std::move(value);
+}
+
+void visit_ply(FieldVisitor& v, Ply& ply) {
+  v.field(
+      {"width", &ply.width, "Size along the warp (u)", Dimension::length, positive(kLargestLength), true});
+  v.field(
+      {"height", &ply.height, "Size along the weft (v)", Dimension::length, positive(kLargestLength), true});
+  v.field({"position", &ply.position, "Place (x, y) of the ply's middle before draping", Dimension::length});
+  v.field({"angle", &ply.angle, "Warp direction, from +x towards +y", Dimension::angle});
+}
+
+void visit_curve(FieldVisitor& v, CurveFields& fields, Dimension abscissa) {
+  v.field({"points",
+           Table{&fields.curve, abscissa},
+           "Rows [strain, stress]; the first row names the units, the second is [0, 0]; strains increase, "
+           "stresses "
+           "do not decrease; straight between rows, and beyond the last one with the last slope",
+           Dimension::none,
+           {},
+           true});
+  v.field({"factor", &fields.factor, "All stresses are multiplied by it", Dimension::none, positive()});
+  v.field({"source", &fields.source, "What was measured, by whom, and what is assumed"});
+}
+
+void visit_material(FieldVisitor& v, MaterialFields& m) {
+  v.field({"name", &m.name, "What the material is called"});
+  v.field({"source", &m.source, "Where the figures come from"});
+  v.field({"law", choice(m.law, {"tables", "linear"}),
+           "`tables`: measured curves per mode; `linear`: straight ones from moduli"});
+  v.field({"thickness", &m.thickness, "Of the ply", Dimension::length, positive(0.05), true});
+  v.field(
+      {"areal_density", &m.areal_density, "Mass per area", Dimension::areal_density, positive(100), true});
+  v.field({"transverse_shear_modulus", &m.transverse_shear_modulus, "G13 = G23", Dimension::stress,
+           positive(), true});
+  v.alternative("law", "tables", m.law == 0, [&] {
+    v.section({"tension", "Nominal fibre stress over nominal strain", true}, true,
+              [&] { visit_curve(v, m.tension, Dimension::strain); });
+    v.section({"compression", "Fibre in compression, magnitudes", true}, true,
+              [&] { visit_curve(v, m.compression, Dimension::strain); });
+    v.section({"shear", "Shear stress over shear angle, conjugate to the angle", true}, true,
+              [&] { visit_curve(v, m.shear, Dimension::angle); });
+  });
+  v.alternative("law", "linear", m.law == 1, [&] {
+    v.field({"modulus", &m.modulus, "Fibre modulus, the same in tension and compression", Dimension::stress,
+             positive(), true});
+    v.field({"shear_modulus", &m.shear_modulus, "Shear stress over shear angle", Dimension::stress, from(0),
+             true});
+  });
+}
+
+void visit_mold(FieldVisitor& v, MoldFields& m) {
+  v.field({"shape",
+           choice(m.shape, {"plane", "polynomial", "sphere", "cylinder"}),
+           "`plane` through the origin; `polynomial` height field; upper half of a `sphere` or a lying "
+           "`cylinder`",
+           Dimension::none,
+           {},
+           true});
+  v.field({"extent",
+           &m.extent,
+           "Part of the x-y plane that the mold covers: [[x0, x1], [y0, y1]]",
+           Dimension::length,
+           {},
+           true});
+  v.alternative("shape", "plane", m.shape == 0, [&] {
+    v.field({"angle",
+             &m.angle,
+             "The plane falls by it towards +x",
+             Dimension::angle,
+             {-kRightAngle, kRightAngle, true, true}});
+  });
+  v.alternative("shape", "polynomial", m.shape == 1, [&] {
+    v.field({"unit", &m.unit, "Length L in z/L = sum of coefficient (x/L)^x (y/L)^y", Dimension::length,
+             positive()});
+    ObjectList terms =
+        object_list("terms", "Terms of the height", m.terms, [&v](PolynomialShape::Term& term) {
+          v.field({"x", &term.i, "Power of x", Dimension::none, from(0, 12), true});
+          v.field({"y", &term.j, "Power of y", Dimension::none, from(0, 12), true});
+          v.field({"coefficient", &term.coefficient, "Dimensionless, see `unit`", Dimension::none, {}, true});
+        });
+    terms.required = true;
+    v.list(terms);
+  });
+  const auto round = [&] {
+    v.field(
+        {"centre", &m.centre, "Centre of the sphere, or a point of the cylinder's axis", Dimension::length});
+    v.field({"radius", &m.radius, "Of the sphere or cylinder", Dimension::length, positive(1e3), true});
+  };
+  v.alternative("shape", "sphere", m.shape == 2, round);
+  v.alternative("shape", "cylinder", m.shape == 3, [&] {
+    round();
+    v.field({"azimuth", &m.azimuth, "Direction of the axis, from +x towards +y", Dimension::angle});
+  });
+}
+
+void visit_mapping(FieldVisitor& v, MappingOptions& m) {
+  v.field(
+      {"generators", choice(m.generators, {"perpendicular", "axes", "mid_sides"}),
+       "Fibre lines through the start point: geodesics at right angles; along the projected warp and weft; "
+       "towards the mid-sides of the mold"});
+  Field start{"start", &m.start, "Point (x, y) of the mold where the mapping starts", Dimension::length};
+  start.default_words = "ply.position";
+  v.field(start);
+  v.field({"ply_start", &m.ply_start, "Point (u, v) of the ply that is placed there", Dimension::length});
+  v.field({"cell_size", &m.cell_size, "Largest edge of a net cell", Dimension::length, from(1e-4, 1)});
+}
+
+void visit_grippers(FieldVisitor& v, RigOptions& g) {
+  v.field({"columns", &g.columns, "Grippers along the warp", Dimension::none, from(1, 100), true});
+  v.field({"rows", &g.rows, "Grippers along the weft", Dimension::none, from(1, 100), true});
+  v.field({"spacing", &g.spacing, "Between neighbouring joints; the grid is centred on the ply",
+           Dimension::length, positive(kLargestLength), true});
+  v.field(
+      {"pad_radius", &g.pad_radius, "Rigid disc that is tied to the ply", Dimension::length, positive(1)});
+  v.field({"pad_mass", &g.pad_mass, "Moving mass of one gripper", Dimension::mass, positive(1e3)});
+  v.field({"joint_offset", &g.joint_offset, "Height of the joint above the ply, along the pad's normal",
+           Dimension::length, from(0, 1)});
+  v.field({"tilt_limit",
+           &g.tilt_limit,
+           "Largest angle between the pad's normal and the vertical",
+           Dimension::angle,
+           {0, kRightAngle, true, true}});
+  v.field({"interlinks", &g.interlinks, "Rigid bars between neighbouring joints"});
+  v.field(
+      {"fixed", &g.fixed, "Gripper [i, j] whose joint is fixed in-plane; i counts along the warp, from 1"});
+  v.field({"actuator_stiffness", &g.actuator_stiffness, "Between the commanded and the true height",
+           Dimension::line_stiffness, positive()});
+  v.field({"actuator_force_limit", &g.actuator_force_limit, "Largest force of an actuator", Dimension::force,
+           positive()});
+  v.field({"max_velocity", &g.max_velocity, "Largest vertical velocity of a joint", Dimension::velocity,
+           positive()});
+  v.field({"blend_time", &g.blend_time, "Time over which a change of velocity is spread", Dimension::time,
+           from(0)});
+}
+
+void visit_schedule(FieldVisitor& v, ScheduleOptions& s) {
+  v.field({"aim", choice(s.aim, {"mapped", "reachable"}),
+           "Commanded heights end above the mapped targets, or above the places that the rig can reach"});
+  v.field({"preshape_height", &s.preshape_height, "Of all grippers above their targets after the preshape",
+           Dimension::length, from(0, kLargestLength)});
+  v.field({"preshape_duration", &s.preshape_duration, "Time of the preshape", Dimension::time, positive()});
+  v.field({"overtravel", &s.overtravel, "Commanded depth below the target, so that pads are pressed down",
+           Dimension::length, from(0, 1)});
+  v.field({"settle", &s.settle, "Time at rest at the end", Dimension::time, from(0)});
+  v.section({"uniform", "All grippers at once", false, {}, true}, true, [&] {
+    v.field({"duration", &s.uniform_duration, "From the preshape to the mold", Dimension::time, positive()});
+  });
+  v.section({"wave", "Rings of grippers, one after another", false, {}, true}, true, [&] {
+    v.field({"duration", &s.wave_duration, "Stroke of one group", Dimension::time, positive()});
+    v.field({"delay", &s.wave_delay, "Between one group and the next", Dimension::time, from(0)});
+    v.field({"delay_from", choice(s.wave_delay_from, {"start", "end"}),
+             "The delay counts from the start or the end of the group before"});
+    v.field({"start", &s.wave_start, "Where the wave starts, in the ply (u, v)", Dimension::length});
+  });
+}
+
+void visit_score(FieldVisitor& v, ScoreOptions& s) {
+  v.field({"wrinkle_threshold", &s.wrinkle_threshold,
+           "A gap above it counts as wrinkled where the ply does not "
+           "bridge a hollow",
+           Dimension::length, positive()});
+  v.field({"target_separation", &s.target_separation, "Reference of the separations", Dimension::length,
+           positive()});
+  v.field({"target_boundary_offset", &s.target_boundary_offset, "Reference of the boundary offsets",
+           Dimension::length, positive()});
+  v.field({"locking_angle",
+           &s.locking_angle_deg,
+           "Shear above it is penalised",
+           Dimension::degrees,
+           {0, 90, true, true}});
+  v.field(
+      {"strain_limit", &s.strain_limit, "Fibre strain above it is penalised", Dimension::none, positive(1)});
+  v.section({"weights", "Of the parts of the objective; 0 leaves a part out", false, {}, true}, true, [&] {
+    v.field(
+        {"max_separation", &s.weight_max_separation, "Of the largest separation", Dimension::none, from(0)});
+    v.field(
+        {"rms_separation", &s.weight_rms_separation, "Of the r.m.s. separation", Dimension::none, from(0)});
+    v.field({"wrinkled_area", &s.weight_wrinkled_area, "Of the wrinkled area, per 1 % of the ply",
+             Dimension::none, from(0)});
+    v.field({"max_boundary_offset", &s.weight_max_boundary_offset, "Of the largest boundary offset",
+             Dimension::none, from(0)});
+    v.field({"rms_boundary_offset", &s.weight_rms_boundary_offset, "Of the r.m.s. boundary offset",
+             Dimension::none, from(0)});
+    v.field({"shear", &s.weight_shear, "Per degree above the locking angle", Dimension::none, from(0)});
+    v.field({"duration", &s.weight_duration, "Per second of the schedule", Dimension::none, from(0)});
+  });
+}
+
+void visit_optimise(FieldVisitor& v, OptimiseOptions& o) {
+  v.field({"wave_evaluations", &o.wave_evaluations, "Budget of the wave family's search", Dimension::none,
+           from(0, 1e6)});
+  v.field({"gripper_evaluations", &o.gripper_evaluations, "Budget of the per-gripper search", Dimension::none,
+           from(0, 1e6)});
+  v.field({"finalists", &o.finalists, "Best schedules that are evaluated at the reporting fidelity",
+           Dimension::none, from(1, 1e4)});
+  v.field({"shortest_stroke", &o.shortest_stroke, "Of a gripper after the preshape", Dimension::time,
+           positive()});
+  v.field({"longest_sequence", &o.longest_sequence, "After the preshape", Dimension::time, positive()});
+  v.field({"seed", &o.seed, "Of all random numbers"});
+}
+
+void visit_fem(FieldVisitor& v, FemOptions& f) {
+  v.field({"mesh_size", &f.mesh_size, "Largest element edge", Dimension::length, from(1e-4, 1)});
+  v.field({"section_points",
+           &f.section_points,
+           "Through the thickness",
+           Dimension::none,
+           {1, 5, false, false, true}});
+  v.field({"mass_scaling", &f.mass_scaling, "Factor on the mass; gravity acts on the unscaled mass",
+           Dimension::none, from(1, 1e6)});
+  v.field({"time_scaling", &f.time_scaling, "The schedule is played this many times faster than written",
+           Dimension::none, from(0.1, 1e4)});
+  v.field(
+      {"step_safety", &f.step_safety, "Share of the estimated stable step", Dimension::none, positive(1)});
+  v.field({"hourglass", &f.hourglass, "Hourglass stiffness over the physical one of a fibre in compression",
+           Dimension::none, from(0, 100)});
+  v.field({"contact_stiffness", &f.contact_stiffness,
+           "Contact stiffness over the membrane stiffness of a node", Dimension::none, positive(100)});
+}
+
+void visit_physics(FieldVisitor& v, CaseFields& fields) {
+  Case& c = fields.value;
+  optional_section(
+      v, {"friction", "Coulomb friction between ply and mold", false, {"mold", "material"}}, c.friction, 0.0,
+      [&v](double& coefficient) {
+        v.field({"coefficient", &coefficient, "Coulomb coefficient", Dimension::none, from(0, 100), true});
+      });
+  MappingOptions mapping;
+  mapping.start = c.ply.position;
+  optional_section(v, {"mapping", "Kinematic energy mapping of the ply onto the mold", false, {"mold"}},
+                   c.mapping, mapping, [&v](MappingOptions& options) { visit_mapping(v, options); });
+  optional_section(v, {"grippers", "The gripper grid", false, {"mold", "mapping", "material"}}, c.grippers,
+                   RigOptions(), [&v](RigOptions& rig) { visit_grippers(v, rig); });
+  v.field({"gravity",
+           &c.gravity,
+           "Downwards",
+           Dimension::acceleration,
+           from(0, 1e3),
+           false,
+           "absent: no gravity",
+           {"material"}});
+  optional_section(v, {"damping", "Mass-proportional damping", false, {"material"}}, c.damping, 0.0,
+                   [&v](double& alpha) {
+                     v.field({"alpha", &alpha,
+                              "Rate, of the unscaled ply: twice the damping ratio times the lowest "
+                              "angular frequency",
+                              Dimension::rate, from(0, 1e6), true});
+                   });
+  v.section({"supports", "What holds a ply without grippers", false, {"material"}}, !c.clamped.empty(), [&] {
+    ChoiceList edges{{"left", "right", "bottom", "top"}, {}, {}};
+    edges.get = [&c] {
+      std::vector<int> indices;
+      for (const Edge edge : c.clamped) indices.push_back(int(edge));
+      return indices;
+    };
+    edges.set = [&c](const std::vector<int>& indices) {
+      c.clamped.clear();
+      for (const int index : indices) c.clamped.push_back(Edge(index));
+    };
+    v.field({"clamped",
+             edges,
+             "Edges of the ply: u = -width/2, u = +width/2, v = -height/2, v = +height/2",
+             Dimension::none,
+             {},
+             true});
+  });
+  ObjectList probes =
+      object_list("probes", "Points of the ply whose displacement is reported", c.probes, [&v](Probe& probe) {
+        v.field({"name", &probe.name, "Name in the results", Dimension::none, {}, true});
+        v.field({"place", &probe.place, "In the ply (u, v)", Dimension::length, {}, true});
+      });
+  probes.needs = {"material"};
+  v.list(probes);
+  v.field({"start_height",
+           &c.start_height,
+           "Height of the flat ply without grippers",
+           Dimension::length,
+           from(-kLargestLength, kLargestLength),
+           false,
+           "",
+           {"material"}});
+  v.field({"duration",
+           &c.duration,
+           "Of a run without grippers",
+           Dimension::time,
+           from(0, 1e5),
+           false,
+           "",
+           {"material"}});
+}
+
+}  // namespace
+
+void visit_case(FieldVisitor& v, CaseFields& fields) {
+  Case& c = fields.value;
+  int format = 0;
+  v.field({"format", choice(format, {kCaseFormat}), "What this file is", Dimension::none, {}, true});
+  v.field(
+      {"name", &c.name, "Short name in tables and reports", Dimension::none, {}, false, "the file's name"});
+  v.field({"description", &c.description, "What the case is about"});
+  v.section({"ply", "The flat rectangular ply", true}, true, [&] { visit_ply(v, c.ply); });
+  optional_section(v, {"material", "The fabric; an object, or the name of a file that holds it"},
+                   fields.material, MaterialFields(),
+                   [&v](MaterialFields& material) { visit_material(v, material); });
+  optional_section(v, {"mold", "The rigid mold; an object, or the name of a file that holds it"}, fields.mold,
+                   MoldFields(), [&v](MoldFields& mold) { visit_mold(v, mold); });
+  visit_physics(v, fields);
+  v.section({"schedule", "The baseline strategies and what they share", false, {"grippers"}, true}, true,
+            [&] { visit_schedule(v, c.schedule); });
+  v.section({"score", "What a draped ply is worth", false, {"mapping"}, true}, true,
+            [&] { visit_score(v, c.score); });
+  v.section({"optimise", "Budgets and limits of the search", false, {"grippers"}, true}, true,
+            [&] { visit_optimise(v, c.optimise); });
+  v.section({"fem", "Numerical settings of the reported run", false, {"material"}, true}, true,
+            [&] { visit_fem(v, fields.fem); });
+  NamedObjects fidelities{
+      "fidelities",
+      "Named numerical settings, each a change of `fem`: `screen` and `search` are used by the "
+      "optimiser; `report` is `fem` itself unless it is named here",
+      {"material"}};
+  for (const auto& [name, options] : c.fidelities) fidelities.names.push_back(name);
+  fidelities.visit = [&](const std::string& name) {
+    visit_fem(v, c.fidelities.try_emplace(name, fields.fem).first->second);
+  };
+  v.named(fidelities);
+}
+
+bool Range::holds(double value) const {
+  if (odd && std::fmod(value, 2) != 1) return false;
+  return (lowest_excluded ? value > lowest : value >= lowest) &&
+         (highest_excluded ? value < highest : value <= highest);
+}
+
+std::string range_text(const Range& range, Dimension dimension) {
+  const auto text = [dimension](double value) { return format_quantity(value, dimension); };
+  std::string limits;
+  if (std::isfinite(range.lowest)) limits = (range.lowest_excluded ? "> " : ">= ") + text(range.lowest);
+  if (std::isfinite(range.highest)) {
+    limits += (limits.empty() ? "" : " and ") + std::string(range.highest_excluded ? "< " : "<= ") +
+              text(range.highest);
+  }
+  if (range.odd) limits += ", odd";
+  return limits;
+}
+
+}  // namespace drapeplan

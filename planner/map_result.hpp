@@ -1,0 +1,25 @@
+// The mapped ply as a result: gripper targets, prescribed boundary, shear.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mapping/net.hpp"
+#include "planner/case.hpp"
+
+namespace drapeplan {
+
+struct MapResult {
+  Net net;
+  std::vector<Eigen::Vector3d> targets;   ///< mapped places of the pad centres, in the order of the rig [m]
+  std::vector<Eigen::Vector3d> boundary;  ///< closed [m]
+  std::vector<Eigen::Vector3d> corners;   ///< (-,-), (+,-), (+,+), (-,+) [m]
+  double max_shear_deg = 0;               ///< largest magnitude over the net's cells [deg]
+  double mean_shear_deg = 0;              ///< mean magnitude over the ply's area [deg]
+};
+
+/// Maps the ply of a case that has a mold and a mapping.
+/// @throws std::domain_error where the mold ends or a cell's minimisation fails.
+MapResult map_case(const Case& value);
+
+}  // namespace drapeplan

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# A wrong input: exit 2, every error on stderr with its path, nothing on stdout, nothing written.
+# Usage: bad_input.sh DRAPEPLAN SOURCE_DIR
+set -uo pipefail
+program=$1 source=$2
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+failures=0
+fail() { echo "FAILED: $*" >&2; failures=$((failures + 1)); }
+
+# expect CODE ARGUMENTS...: runs the program, keeps its output in $work.
+expect() {
+  local code=$1
+  shift
+  "$program" "$@" >"$work/stdout" 2>"$work/stderr"
+  local got=$?
+  [ "$got" = "$code" ] || fail "exit $got instead of $code: $*: $(head -c 400 "$work/stderr")"
+}
+
+for bad in "$source"/tests/bad_cases/*.json; do
+  for verb in check map reach; do
+    expect 2 "$verb" "$bad" --out "$work/out"
+    while IFS= read -r line; do
+      grep -qF -- "$line" "$work/stderr" || fail "$verb $bad: no '$line' on stderr"
+    done <"${bad%.json}.expected"
+    [ -s "$work/stdout" ] && fail "$verb $bad: something on stdout"
+    [ -e "$work/out" ] && fail "$verb $bad: something was written"
+  done
+done
+
+good=$source/cases/flexdraper-quick.json
+expect 2                                             # no verb
+expect 2 drpe                                        # no such verb
+expect 2 map                                         # no case
+expect 2 map "$good" --threads 0
+expect 2 map "$good" --set ply.widht='1 mm'
+grep -qF '/ply/widht: unknown key "widht"; did you mean "width"?' "$work/stderr" || fail "--set error without path"
+expect 2 explain grippers.joint_ofset
+grep -qF 'did you mean "grippers.joint_offset"?' "$work/stderr" || fail "explain without the nearest word"
+expect 2 map "$source/cases/cantilever-150.json"     # no mapping
+expect 2 reach "$source/cases/sphere-mapping.json"   # no grippers
+expect 0 --help
+expect 0 map --help
+[ $failures = 0 ]
