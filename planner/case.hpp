@@ -59,6 +59,13 @@ struct Probe {
   Eigen::Vector2d place{0, 0};  ///< (u, v) [m]
 };
 
+/// A published result, shown beside the own ones.
+struct Reference {
+  std::string name;
+  double max_separation = 0;       ///< [m]
+  double max_boundary_offset = 0;  ///< [m]
+};
+
 /// Where the figures of the material come from, in words; all may be empty.
 struct MaterialNotes {
   std::string name, source;
@@ -77,10 +84,12 @@ struct Case {
   std::optional<double> friction;           ///< Coulomb coefficient between ply and mold
   std::optional<MappingOptions> mapping;
   std::optional<RigOptions> grippers;
+  std::string grippers_source;              ///< where their figures come from, in words
   std::optional<double> gravity;            ///< [m/s^2]
   std::optional<double> damping;            ///< mass-proportional rate alpha of the unscaled ply [1/s]
   std::vector<Edge> clamped;
   std::vector<Probe> probes;
+  std::vector<Reference> references;
   double duration = 0;                      ///< of a run without grippers [s]
   ScheduleOptions schedule;
   ScoreOptions score;

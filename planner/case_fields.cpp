@@ -272,7 +272,10 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
   optional_section(v, {"mapping", "Kinematic energy mapping of the ply onto the mold", false, {"mold"}},
                    c.mapping, mapping, [&v](MappingOptions& options) { visit_mapping(v, options); });
   optional_section(v, {"grippers", "The gripper grid", false, {"mold", "mapping", "material"}}, c.grippers,
-                   RigOptions(), [&v](RigOptions& rig) { visit_grippers(v, rig); });
+                   RigOptions(), [&v, &c](RigOptions& rig) {
+                     visit_grippers(v, rig);
+                     v.field({"source", &c.grippers_source, "Where the figures come from"});
+                   });
   v.field({"gravity",
            &c.gravity,
            "Downwards",
@@ -313,6 +316,15 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
       });
   probes.needs = {"material"};
   v.list(probes);
+  ObjectList references = object_list(
+      "references", "Published results that are shown beside the own ones", c.references, [&v](Reference& r) {
+        v.field({"name", &r.name, "Name in tables", Dimension::none, {}, true});
+        v.field({"max_separation", &r.max_separation, "Largest separation", Dimension::length, from(0), true});
+        v.field({"max_boundary_offset", &r.max_boundary_offset, "Largest boundary offset", Dimension::length,
+                 from(0), true});
+      });
+  references.needs = {"grippers"};
+  v.list(references);
   v.field({"start_height",
            &c.start_height,
            "Height of the flat ply without grippers",

@@ -33,6 +33,8 @@ using Action = std::function<int()>;
 void add_check(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);
 void add_explain(CLI::App& program, Action& action);
+void add_plan(CLI::App& program, Action& action);
+void add_simulate(CLI::App& program, Action& action);
 void add_map(CLI::App& program, Action& action);
 void add_reach(CLI::App& program, Action& action);
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "planner/cli.hpp"
+#include "planner/drape_problem.hpp"
 #include "planner/map_result.hpp"
 #include "planner/reach.hpp"
 
@@ -56,23 +57,11 @@ std::string result_text(const ReachProblem& problem, const ReachResult& reach) {
   return text + "\n\n" + explain_reach(problem, reach) + "\n";
 }
 
-ReachProblem problem_of(const Case& value) {
-  const RigOptions& rig = *value.grippers;
-  ReachProblem problem{rig, *value.mold, map_case(value).targets, value.ply.position};
-  if (rig.fixed) {
-    const int index = ((*rig.fixed)[1] - 1) * rig.columns + (*rig.fixed)[0] - 1;
-    const double c = std::cos(value.ply.angle), s = std::sin(value.ply.angle);
-    const Eigen::Vector2d place = rig.place(index);
-    problem.fixed_place += Eigen::Vector2d(c * place.x() - s * place.y(), s * place.x() + c * place.y());
-  }
-  return problem;
-}
-
 int reach(const ReachOptions& options) {
   const std::optional<Case> value = load_case(options.file, options.common, {"grippers"});
   if (!value) return kInputWrong;
   try {
-    const ReachProblem problem = problem_of(*value);
+    const ReachProblem problem = reach_problem_of(*value, map_case(*value).targets);
     const ReachResult result = solve_reach(problem, kRandomStarts, value->optimise.seed);
     const int code =
         deliver(result_json(problem, result), result_text(problem, result), options.common, &*value);

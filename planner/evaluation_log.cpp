@@ -10,6 +10,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "planner/result_fields.hpp"
+
 namespace drapeplan {
 namespace {
 
@@ -18,71 +20,15 @@ using nlohmann::json;
 constexpr const char* kFormat = "drapeplan-evaluations-1";
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::string hex(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-  return text;
-}
-
 std::uint64_t from_hex(const json& text) {
   return std::stoull(text.get<std::string>(), nullptr, 16);
 }
 
-/// JSON has no infinity: null stands for every number that is not finite.
 double number_or(const json& value, double otherwise) {
   return value.is_null() ? otherwise : value.get<double>();
 }
-json finite(double value) {
-  return std::isfinite(value) ? json(value) : json(nullptr);
-}
-
-/// Calls visit(key, field) for every number of a score: one list for writing and reading.
-template <class ScoreType, class Visit>
-void for_each_part(ScoreType& s, const Visit& visit) {
-  visit("max_separation", s.max_separation);
-  visit("rms_separation", s.rms_separation);
-  visit("wrinkled_area", s.wrinkled_area);
-  visit("max_boundary_offset", s.max_boundary_offset);
-  visit("rms_boundary_offset", s.rms_boundary_offset);
-  visit("max_shear_deg", s.max_shear_deg);
-  visit("max_fibre_strain", s.max_fibre_strain);
-  visit("max_actuator_force", s.max_actuator_force);
-  visit("duration", s.duration);
-  visit("objective", s.objective);
-}
-
-/// The same for the doubles of a report.
-template <class ReportType, class Visit>
-void for_each_figure(ReportType& r, const Visit& visit) {
-  visit("dt", r.dt);
-  visit("simulated_time", r.simulated_time);
-  visit("wall_seconds", r.wall_seconds);
-  visit("element_updates_per_second", r.element_updates_per_second);
-  visit("kinetic", r.energy.kinetic);
-  visit("internal", r.energy.internal);
-  visit("external", r.energy.external);
-  visit("friction", r.energy.friction);
-  visit("contact", r.energy.contact);
-  visit("damping", r.energy.damping);
-  visit("constraint", r.energy.constraint);
-  visit("hourglass", r.energy.hourglass);
-  visit("largest_energy", r.energy.largest);
-  visit("balance_error", r.energy.balance_error);
-  visit("largest_kinetic_ratio", r.largest_kinetic_ratio);
-  visit("largest_penetration", r.largest_penetration);
-  visit("largest_link_error", r.largest_link_error);
-}
 
 json to_json(const Evaluation& e) {
-  json score, report;
-  for_each_part(e.outcome.score, [&](const char* key, double value) { score[key] = finite(value); });
-  score["valid"] = e.outcome.score.valid;
-  if (!e.outcome.score.valid) score["reason"] = e.outcome.score.reason;
-  for_each_figure(e.outcome.report, [&](const char* key, double value) { report[key] = finite(value); });
-  report["status"] = e.outcome.report.status == RunStatus::done ? "done" : "diverged";
-  report["message"] = e.outcome.report.message;
-  report["steps"] = e.outcome.report.steps;
-  report["state_hash"] = hex(e.outcome.report.state_hash);
   return {{"number", e.number},
           {"stage", e.stage},
           {"fidelity", e.fidelity},
@@ -90,8 +36,8 @@ json to_json(const Evaluation& e) {
           {"objective", finite(e.outcome.score.objective)},
           {"best_so_far", finite(e.best_so_far)},
           {"wall_seconds", finite(e.outcome.wall_seconds)},
-          {"score", score},
-          {"report", report}};
+          {"score", score_json(e.outcome.score)},
+          {"report", report_json(e.outcome.report)}};
 }
 
 Evaluation from_json(const json& j) {
@@ -110,6 +56,9 @@ Evaluation from_json(const json& j) {
   if (!e.outcome.score.valid) e.outcome.score.reason = score.at("reason").get<std::string>();
   for_each_figure(e.outcome.report,
                   [&](const char* key, double& v) { v = number_or(report.at(key), kLost); });
+  const json& energy = report.at("energy");
+  for_each_energy(e.outcome.report.energy,
+                  [&](const char* key, double& v) { v = number_or(energy.at(key), kLost); });
   e.outcome.report.status = report.at("status") == "done" ? RunStatus::done : RunStatus::diverged;
   e.outcome.report.message = report.at("message").get<std::string>();
   e.outcome.report.steps = report.at("steps").get<std::int64_t>();

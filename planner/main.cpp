@@ -10,8 +10,10 @@ int main(int argc, char** argv) {
     CLI::App program("Plans the draping of woven prepreg plies by a grid of grippers.", "drapeplan");
     program.require_subcommand(1);
     Action action;
+    add_plan(program, action);
     add_map(program, action);
     add_reach(program, action);
+    add_simulate(program, action);
     add_check(program, action);
     add_schema(program, action);
     add_explain(program, action);

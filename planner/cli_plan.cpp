@@ -1,0 +1,156 @@
+// plan: the main job, for one or many case files.
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "planner/cli.hpp"
+#include "planner/plan.hpp"
+#include "planner/result_fields.hpp"
+#include "planner/run_files.hpp"
+
+namespace drapeplan {
+namespace {
+
+using nlohmann::json;
+
+struct PlanVerbOptions {
+  CommonOptions common;
+  std::vector<std::string> files;
+  bool resume = false;
+};
+
+/// A line on stderr every few seconds: where the search is, how good, how long still.
+class ProgressLine {
+ public:
+  void operator()(const Progress& progress) {
+    const auto now = std::chrono::steady_clock::now();
+    const bool last = progress.done == progress.planned;
+    if (progress.stage == stage_ && !last && now - shown_ < std::chrono::seconds(kSeconds)) return;
+    shown_ = now;
+    stage_ = progress.stage;
+    std::fprintf(stderr, "  %4d/%d  %-8s best %8.3f", progress.done, progress.planned, progress.stage.c_str(),
+                 progress.best);
+    if (std::isfinite(progress.seconds_left)) std::fprintf(stderr, "   about %.0f s left", progress.seconds_left);
+    std::fputc('\n', stderr);
+  }
+
+ private:
+  static constexpr int kSeconds = 5;
+  std::chrono::steady_clock::time_point shown_{};
+  std::string stage_;
+};
+
+json history_json(const StagedResult& search) {
+  json list = json::array();
+  for (const HistoryEntry& entry : search.history) {
+    list.push_back({{"evaluation", entry.number},
+                    {"stage", entry.stage},
+                    {"fidelity", entry.fidelity},
+                    {"objective", finite(entry.objective)},
+                    {"best_so_far", finite(entry.best_so_far)}});
+  }
+  return list;
+}
+
+json drape_json(const Drape& drape) {
+  json out = report_json(drape.run.report);
+  out["score"] = score_json(drape.score);
+  return out;
+}
+
+json plan_json(const DrapeProblem& problem, const PlanResult& result) {
+  const StagedResult& search = result.search;
+  json reach{{"floor_max", finite(problem.reach().floor_max)},
+             {"floor_rms", finite(problem.reach().floor_rms)},
+             {"link_violation", finite(problem.reach().link_violation)},
+             {"status", problem.reach().status},
+             {"meaning", explain_reach(problem.reach_problem(), problem.reach())}};
+  return {{"case", problem.value().name},
+          {"reach", reach},
+          {"map", {{"max_shear_deg", problem.mapping().max_shear_deg}, {"mean_shear_deg", problem.mapping().mean_shear_deg}}},
+          {"baselines", {{"uniform", score_json(result.uniform.score)}, {"wave", score_json(result.wave.score)}}},
+          {"best",
+           {{"score", score_json(result.best.score)}, {"schedule", "schedule.json"}, {"candidate", search.best.name}}},
+          {"runs",
+           {{"uniform", drape_json(result.uniform)}, {"wave", drape_json(result.wave)}, {"best", drape_json(result.best)}}},
+          {"beats_baselines", search.beats_baselines},
+          {"message", search.message},
+          {"evaluations", search.evaluations},
+          {"failed_evaluations", search.failed_evaluations},
+          {"wall_seconds", result.wall_seconds},
+          {"history", history_json(search)}};
+}
+
+/// Plans one case into its folder and returns its result; throws what went wrong.
+json plan_case(Case value, const PlanVerbOptions& options, const std::filesystem::path& folder) {
+  const bool talk = !options.common.quiet;
+  const std::string name = value.name;
+  const DrapeProblem problem(std::move(value));
+  if (talk) {
+    std::cerr << name << ": mapped, shear at most " << problem.mapping().max_shear_deg << " deg\n  terms:";
+    for (const std::string& term : problem.model("report").term_names()) std::cerr << " [" << term << "]";
+    std::cerr << "\n  reach: " << explain_reach(problem.reach_problem(), problem.reach()) << '\n';
+  }
+  ProgressLine line;
+  const PlanResult result = plan(problem, {folder, options.resume, options.common.threads}, [&](const Progress& progress) {
+    if (talk) line(progress);
+  });
+  write_plan(folder, problem, result);
+  const json out = plan_json(problem, result);
+  write_text(folder / "result.json", out.dump(2) + "\n");
+  write_text(folder / "resolved.json", resolved_case(problem.value()).dump(2) + "\n");
+  if (!options.common.json && talk) {
+    std::cout << '\n' << comparison_table(problem, result) << '\n' << result.search.message << '\n';
+    std::cout << result.search.evaluations << " evaluations (" << result.search.failed_evaluations << " failed) in "
+              << std::llround(result.wall_seconds) << " s; report: " << (folder / "report.html").string() << std::endl;
+  }
+  return out;
+}
+
+int plan_all(const PlanVerbOptions& options) {
+  std::vector<Case> cases;
+  bool wrong = false;
+  for (const std::string& file : options.files) {
+    std::optional<Case> value = load_case(file, options.common, {"grippers", "material"});
+    wrong = wrong || !value;
+    if (value) cases.push_back(std::move(*value));
+  }
+  if (wrong) return kInputWrong;
+  const std::filesystem::path root = options.common.out.empty() ? "out" : options.common.out;
+  const bool single = cases.size() == 1 && !options.common.out.empty();
+  json results = json::array();
+  int code = kDone;
+  for (size_t k = 0; k < cases.size(); ++k) {
+    const std::filesystem::path folder = single ? root : root / std::filesystem::path(options.files[k]).stem();
+    try {
+      results.push_back(plan_case(std::move(cases[k]), options, folder));
+    } catch (const std::invalid_argument& error) {
+      std::cerr << options.files[k] << ": " << error.what() << '\n';
+      code = kInputWrong;
+    } catch (const std::exception& error) {
+      std::cerr << options.files[k] << ": not finished: " << error.what() << "; what was done is kept in "
+                << folder.string() << '\n';
+      if (code == kDone) code = kNotFinished;
+    }
+  }
+  if (options.common.json) {
+    std::cout << (results.size() == 1 ? results[0] : json{{"cases", results}}).dump(2) << '\n';
+  }
+  return code;
+}
+
+}  // namespace
+
+void add_plan(CLI::App& program, Action& action) {
+  CLI::App* verb = program.add_subcommand(
+      "plan", "the main job: finds a better draping sequence and compares it with the uniform and the wave baseline");
+  const auto options = std::make_shared<PlanVerbOptions>();  // lives as long as CLI11 keeps the callback
+  verb->add_option("CASE", options->files, "case files")->required();
+  add_common_options(*verb, options->common);
+  verb->add_flag("--resume", options->resume, "continue from the evaluations in the run directory");
+  verb->callback([&action, options] { action = [options] { return plan_all(*options); }; });
+}
+
+}  // namespace drapeplan

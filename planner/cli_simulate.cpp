@@ -1,0 +1,165 @@
+// simulate: one FE run, with or without grippers.
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "planner/cli.hpp"
+#include "planner/drape_problem.hpp"
+#include "planner/result_fields.hpp"
+#include "planner/run_files.hpp"
+#include "planner/schedule_file.hpp"
+#include "planner/vtu.hpp"
+
+namespace drapeplan {
+namespace {
+
+using nlohmann::json;
+
+struct SimulateOptions {
+  CommonOptions common;
+  std::string file;
+  std::string schedule = "uniform";
+  std::string fidelity = "report";
+  int frames = 21;
+};
+
+std::string summary(const RunReport& report, int nodes) {
+  char text[600];
+  std::snprintf(text, sizeof text,
+                "%s: %lld steps of %.3g us on %d nodes in %.1f s (%.1f million element updates per second)\n"
+                "energy [J]: kinetic %.3g, internal %.4g, external %.4g, friction %.4g, damping %.4g, constraint %.3g, "
+                "hourglass %.3g; books close to %.1e of the largest\nstate hash %s\n",
+                report.message.c_str(), static_cast<long long>(report.steps), 1e6 * report.dt, nodes,
+                report.wall_seconds, 1e-6 * report.element_updates_per_second, report.energy.kinetic,
+                report.energy.internal, report.energy.external, report.energy.friction, report.energy.damping,
+                report.energy.constraint, report.energy.hourglass, report.energy.balance_error,
+                hex(report.state_hash).c_str());
+  return text;
+}
+
+/// Displacements of the named points: of the node nearest to each.
+json probes_json(const Case& value, const Model& model, const Snapshot& start, const Snapshot& end) {
+  json probes = json::object();
+  for (const Probe& probe : value.probes) {
+    const auto& rest = model.scene().mesh.rest;
+    size_t nearest = 0;
+    for (size_t n = 1; n < rest.size(); ++n) {
+      if ((rest[n] - probe.place).norm() < (rest[nearest] - probe.place).norm()) nearest = n;
+    }
+    const Eigen::Vector3d u = end.position[nearest] - start.position[nearest];
+    probes[probe.name] = {{"displacement", {u.x(), u.y(), u.z()}}};
+  }
+  return probes;
+}
+
+/// A case without grippers: strips and specimens.
+int simulate_free(const Case& value, const SimulateOptions& options) {
+  const Model model(scene_of(value, value.fidelities.at(options.fidelity)));
+  std::vector<Snapshot> frames;
+  const RunResult run = simulate(model, {.schedule = nullptr,
+                                         .duration = value.duration,
+                                         .frames = std::max(options.frames, 1),
+                                         .observe = [&](const Snapshot& frame) { frames.push_back(frame); }});
+  json result = report_json(run.report);
+  result["terms"] = model.term_names();
+  result["probes"] = probes_json(value, model, frames.front(), run.final);
+  std::string text = summary(run.report, model.node_count());
+  for (const auto& [name, probe] : result["probes"].items()) {
+    const auto u = probe["displacement"];
+    char line[200];
+    std::snprintf(line, sizeof line, "%s moved by (%.3f, %.3f, %.3f) mm\n", name.c_str(), 1e3 * u[0].get<double>(),
+                  1e3 * u[1].get<double>(), 1e3 * u[2].get<double>());
+    text += line;
+  }
+  const int code = deliver(result, text, options.common, &value);
+  if (code == kDone && !options.common.out.empty()) {
+    write_frames(options.common.out, "ply", model.scene().mesh, frames, value.mold ? &*value.mold : nullptr,
+                 value.material.thickness);
+  }
+  return run.report.status == RunStatus::done ? code : kNotFinished;
+}
+
+/// The schedule by name or from a file; prints errors and returns nothing if the file is wrong.
+std::optional<Schedule> schedule_of(const DrapeProblem& problem, const std::string& name) {
+  if (name == "uniform") return to_schedule(problem.frame(), uniform_strokes(problem.frame()));
+  if (name == "wave") return to_schedule(problem.frame(), wave_strokes(problem.frame()));
+  ScheduleReading reading = read_schedule(name, *problem.value().grippers);
+  if (reading.errors.empty()) return std::move(reading.value);
+  print_errors(reading.errors);
+  return std::nullopt;
+}
+
+int simulate_drape(Case value, const SimulateOptions& options) {
+  const DrapeProblem problem(std::move(value));
+  const std::optional<Schedule> schedule = schedule_of(problem, options.schedule);
+  if (!schedule) return kInputWrong;
+  const bool files = !options.common.out.empty();
+  const Drape drape = problem.run(*schedule, options.fidelity, files ? options.frames : 0);
+  const Model& model = problem.model(options.fidelity);
+  json result = report_json(drape.run.report);
+  result["score"] = score_json(drape.score);
+  result["terms"] = model.term_names();
+  char line[300];
+  std::snprintf(line, sizeof line,
+                "gap max %.2f mm, r.m.s. %.2f mm; boundary offset max %.2f mm, r.m.s. %.2f mm; shear %.1f deg; fibre "
+                "strain %.2f %%; objective %.3f\n",
+                1e3 * drape.score.max_separation, 1e3 * drape.score.rms_separation,
+                1e3 * drape.score.max_boundary_offset, 1e3 * drape.score.rms_boundary_offset,
+                drape.score.max_shear_deg, 1e2 * drape.score.max_fibre_strain, drape.score.objective);
+  const int code =
+      deliver(result, summary(drape.run.report, model.node_count()) + line, options.common, &problem.value());
+  if (code == kDone && files) {
+    const std::filesystem::path folder(options.common.out);
+    const Case& resolved = problem.value();
+    write_frames(folder, "ply", model.scene().mesh, drape.frames, &*resolved.mold, resolved.material.thickness);
+    write_mold_vtu(folder / "mold.vtu", *resolved.mold);
+    write_text(folder / "drape.svg", drape_picture({drape_panel(problem, drape, options.fidelity, options.schedule)},
+                                                   resolved.mold->extent()));
+    write_schedule(folder / "schedule.json", *schedule, *resolved.grippers);
+    write_schedule_csv(folder / "schedule.csv", *schedule, *resolved.grippers);
+  }
+  return drape.run.report.status == RunStatus::done ? code : kNotFinished;
+}
+
+int run_simulate(const SimulateOptions& options) {
+  std::optional<Case> value = load_case(options.file, options.common, {"material"});
+  if (!value) return kInputWrong;
+  if (value->fidelities.count(options.fidelity) == 0) {
+    std::cerr << options.file << ": /fidelities: there is no fidelity \"" << options.fidelity << "\"; there are";
+    for (const auto& entry : value->fidelities) std::cerr << ' ' << entry.first;
+    std::cerr << '\n';
+    return kInputWrong;
+  }
+  if (!value->grippers && !(value->duration > 0)) {
+    std::cerr << options.file << ": /duration: a case without grippers needs a duration, e.g. \"2 s\"\n";
+    return kInputWrong;
+  }
+  try {
+    return value->grippers ? simulate_drape(std::move(*value), options) : simulate_free(*value, options);
+  } catch (const std::invalid_argument& error) {
+    std::cerr << options.file << ": " << error.what() << '\n';
+    return kInputWrong;
+  } catch (const std::runtime_error& error) {
+    std::cerr << options.file << ": not finished: " << error.what() << '\n';
+    return kNotFinished;
+  } catch (const std::domain_error& error) {
+    std::cerr << options.file << ": the ply cannot be mapped: " << error.what() << '\n';
+    return kNotFinished;
+  }
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& program, Action& action) {
+  CLI::App* verb = program.add_subcommand("simulate", "one finite-element run of a case");
+  const auto options = std::make_shared<SimulateOptions>();  // lives as long as CLI11 keeps the callback
+  verb->add_option("CASE", options->file, "case file")->required();
+  add_common_options(*verb, options->common);
+  verb->add_option("--schedule", options->schedule, "uniform, wave or a schedule file (default: uniform)");
+  verb->add_option("--fidelity", options->fidelity, "fidelity of the case (default: report)");
+  verb->add_option("--frames", options->frames, "instants written for ParaView (default: 21)")->check(CLI::Range(1, 10000));
+  verb->callback([&action, options] { action = [options] { return run_simulate(*options); }; });
+}
+
+}  // namespace drapeplan

@@ -1,0 +1,82 @@
+#include "planner/plan.hpp"
+
+#include <chrono>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "planner/case_file.hpp"
+#include "planner/parallel.hpp"
+
+namespace drapeplan {
+namespace {
+
+constexpr int kFrames = 21;  // of a reported drape, for ParaView: twenty equal parts of the sequence
+constexpr const char* kReport = "report";
+
+/// Drapes at the reporting fidelity, kept with their frames so that pictures need no second run.
+class ReportedDrapes {
+ public:
+  void keep(std::uint64_t hash, Drape drape) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    drapes_[hash] = std::move(drape);
+  }
+  /// The drape of a schedule; run now if it came from the log of an earlier run.
+  Drape take(const DrapeProblem& problem, const Schedule& schedule) {
+    const auto known = drapes_.find(schedule_hash(schedule));
+    return known != drapes_.end() ? known->second : problem.run(schedule, kReport, kFrames);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::uint64_t, Drape> drapes_;
+};
+
+}  // namespace
+
+std::uint64_t case_hash(const Case& value) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
+  for (const char byte : resolved_case(value).dump()) {
+    hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
+  }
+  return hash;
+}
+
+PlanResult plan(const DrapeProblem& problem, const PlanOptions& options,
+                const std::function<void(const Progress&)>& progress) {
+  const auto clock = std::chrono::steady_clock::now();
+  std::filesystem::create_directories(options.out);
+  const std::filesystem::path file = options.out / "evaluations.jsonl";
+  if (!options.resume) std::filesystem::remove(file);
+  EvaluationLog log(file.string(), case_hash(problem.value()));
+
+  ReportedDrapes reported;
+  const Evaluate evaluate = [&](const Schedule& schedule, const std::string& fidelity) {
+    const bool report = fidelity == kReport;
+    Drape drape = problem.run(schedule, fidelity, report ? kFrames : 0);
+    Outcome outcome{.score = drape.score, .report = drape.run.report, .wall_seconds = drape.run.report.wall_seconds};
+    if (report) reported.keep(schedule_hash(schedule), std::move(drape));
+    return outcome;
+  };
+  StagedOptions staged;
+  staged.optimise = problem.value().optimise;
+  staged.threads = options.threads;
+  const auto fidelity_or_report = [&](const char* name) {
+    return problem.value().fidelities.count(name) > 0 ? std::string(name) : std::string(kReport);
+  };
+  staged.wave_fidelity = fidelity_or_report("screen");
+  staged.gripper_fidelity = fidelity_or_report("search");
+
+  PlanResult result;
+  result.search = staged_search(problem.frame(), staged, make_batch_evaluate(evaluate, log, options.threads), progress);
+  const StagedResult& search = result.search;
+  const std::array<std::pair<const Candidate*, Drape*>, 3> wanted{
+      {{&search.uniform, &result.uniform}, {&search.wave, &result.wave}, {&search.best, &result.best}}};
+  parallel_for(
+      int(wanted.size()),
+      [&](int k) { *wanted[size_t(k)].second = reported.take(problem, wanted[size_t(k)].first->schedule); },
+      options.threads);
+  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  return result;
+}
+
+}  // namespace drapeplan
