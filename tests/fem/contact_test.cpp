@@ -26,9 +26,15 @@ struct Incline {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()).toRotationMatrix();
     test::rotate(state, model->node_count(), turn);
     const Eigen::Vector3d normal = turn.col(2);
-    // Lifted by half the thickness less the static penetration, so that nothing bounces.
+    // Lifted by half the thickness less the static penetration, so that nothing bounces. A bouncing node loses the
+    // friction of the step at which it touches anew.
+    NodalStiffness stiffness{std::vector<double>(9), std::vector<double>(9), std::vector<double>(9)};
+    model->terms().front()->add_stiffness(stiffness);
+    const std::vector<double> area = nodal_areas(scene.mesh);
     for (size_t n = 0; n < size_t(model->node_count()); ++n) {
-      test::put(state.x, n, test::get(state.x, n) + 1.5e-4 * normal);
+      const double weight = 0.314 * area[n] * kGravity * std::cos(angle);
+      const double sunk = weight / (scene.options.contact_stiffness * stiffness.translation[n]);
+      test::put(state.x, n, test::get(state.x, n) + (1.5e-4 - sunk) * normal);
     }
   }
   /// Distance moved by the sheet's middle down the slope in `time`.
@@ -50,16 +56,18 @@ struct Incline {
 
 TEST(Friction, HoldsASheetBelowItsAngleWithoutCreep) {
   Incline incline(std::atan(0.5) - 0.02, 0.5);
-  incline.slide(0.02);  // settles elastically
+  incline.slide(0.02);
+  // No creep: what is left is the elastic oscillation of the anchored springs.
   EXPECT_LE(incline.slide(0.05), 2e-8);
+  EXPECT_LE(incline.slide(0.5), 2e-8);
 }
 
 TEST(Friction, LetsASheetSlideAboveItsAngleWithTheClosedFormAcceleration) {
   const double angle = std::atan(0.5) + 0.2;
   const double acceleration = kGravity * (std::sin(angle) - 0.5 * std::cos(angle));
   Incline incline(angle, 0.5);
-  const double time = 0.1;
-  EXPECT_NEAR(incline.slide(time), 0.5 * acceleration * time * time, 0.01 * 0.5 * acceleration * time * time);
+  const double time = 0.1;  // some 5000 steps; the measured path is up to two steps too long
+  EXPECT_NEAR(incline.slide(time), 0.5 * acceleration * time * time, 0.002 * 0.5 * acceleration * time * time);
 }
 
 TEST(Contact, CarriesTheWeightOfAPlyAtRest) {

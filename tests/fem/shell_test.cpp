@@ -128,26 +128,28 @@ TEST_P(ShellTerms, PassThePatchTest) {
   EXPECT_LE(inner, 1e-8);
 }
 
-TEST_P(ShellTerms, StayBoundedBelowTheStableStepAndGrowWellAboveIt) {
-  for (const double factor : {0.95, 2.5}) {
+// With a linear law the estimate must be close to the truth from below. (The fabric's estimate is for its stiffest strain.)
+TEST_P(ShellTerms, StayBoundedBelowTheStableStepAndGrowAboveIt) {
+  for (const double factor : {0.98, 1.3}) {
     Scene free = scene;
+    free.fabric = test::linear_fabric(1e9, 1e6, 2e5);
     free.options.step_safety = factor;
     const Model run(free);
     State s = run.flat_state(0);
     test::disturb(s, int(nodes), 1e-9, 0);
     Workspace work(run);
-    for (int k = 0; k < 3000; ++k) {
+    for (int k = 0; k < 20000; ++k) {
       compute_forces(run, s, work);
       kick_nodes(run, s, work);
       drift_nodes(run, s);
     }
-    double largest = 0;
-    for (size_t n = 0; n < nodes; ++n) largest = std::max(largest, std::abs(s.v.x[n]));
-    const double bounded = 1e-9 / run.dt() * 100;
+    double speed = 0;
+    for (size_t n = 0; n < nodes; ++n) speed += std::abs(s.v.x[n]);  // a sum, since max() would lose NaN
+    const double bounded = 1e-9 / run.dt() * 100 * double(nodes);
     if (factor < 1) {
-      EXPECT_LE(largest, bounded);
+      EXPECT_LE(speed, bounded);
     } else {
-      EXPECT_FALSE(largest <= bounded);
+      EXPECT_FALSE(speed <= bounded);
     }
   }
 }
