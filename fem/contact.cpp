@@ -7,6 +7,9 @@ namespace {
 
 namespace stdx = std::experimental;
 
+/// Square of the steepest slope that can be touched (84 degrees): at a vertical wall a height field has no distance.
+constexpr double kSteepest2 = 100;
+
 /// Masked minimum of one, where the divisor may be zero.
 Lanes share_held(const Lanes& limit, const Lanes& pull) {
   Lanes share(1.0);
@@ -50,9 +53,10 @@ class ContactTerm final : public Term {
   void lanes(State& state, Forces* entries, size_t at, const Lanes& z, const Lanes& zx, const Lanes& zy) const {
     const Lanes zero(0.0), one(1.0);
     const Vec3<Lanes> x = state.x.lanes(at);
-    const Lanes rise = one / stdx::sqrt(one + zx * zx + zy * zy);
+    const Lanes slope2 = zx * zx + zy * zy;
+    const Lanes rise = one / stdx::sqrt(one + slope2);
     const Lanes gap = (x.z - z) * rise - Lanes(surface_);
-    const auto touching = gap < zero;
+    const auto touching = gap < zero && slope2 < Lanes(kSteepest2);  // false where the mold is not defined
     if (stdx::none_of(touching)) {
       entries[0].force.set_lanes(at, {zero, zero, zero});
       if constexpr (kFriction) {
@@ -62,7 +66,8 @@ class ContactTerm final : public Term {
       return;
     }
     const Lanes stiffness = load(&stiffness_[at]);
-    const Vec3<Lanes> normal{-(zx * rise), -(zy * rise), rise};
+    Vec3<Lanes> normal{-(zx * rise), -(zy * rise), rise};
+    for (Lanes* part : {&normal.x, &normal.y, &normal.z}) stdx::where(!touching, *part) = zero;  // may be NaN
     Lanes press = -(stiffness * gap);
     stdx::where(!touching, press) = zero;
     entries[0].force.set_lanes(at, press * normal);

@@ -8,16 +8,25 @@ double Curve::operator()(double at) const {
   const auto upper = std::upper_bound(strain.begin(), strain.end(), at);
   const auto last = std::ptrdiff_t(strain.size()) - 1;
   const auto k = size_t(std::clamp<std::ptrdiff_t>(upper - strain.begin(), 1, last));
-  const double slope = (stress[k] - stress[k - 1]) / (strain[k] - strain[k - 1]);
-  return stress[k - 1] + slope * (at - strain[k - 1]);
+  return stress[k - 1] + slope(k - 1) * (at - strain[k - 1]);
+}
+
+double Curve::slope(size_t piece) const {
+  return (stress[piece + 1] - stress[piece]) / (strain[piece + 1] - strain[piece]);
 }
 
 double Curve::largest_slope() const {
   double largest = 0;
-  for (size_t k = 1; k < strain.size(); ++k) {
-    largest = std::max(largest, (stress[k] - stress[k - 1]) / (strain[k] - strain[k - 1]));
-  }
+  for (size_t k = 0; k + 1 < strain.size(); ++k) largest = std::max(largest, slope(k));
   return largest;
+}
+
+double Curve::smallest_slope() const {
+  double smallest = 0;
+  for (size_t k = 0; k + 1 < strain.size(); ++k) {
+    if (slope(k) > 0 && (smallest == 0 || slope(k) < smallest)) smallest = slope(k);
+  }
+  return smallest;
 }
 
 }  // namespace drapeplan

@@ -1,6 +1,7 @@
 // The woven fabric: nominal stress over strain along the fibres, and shear stress over shear angle.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace drapeplan {
@@ -12,7 +13,9 @@ struct Curve {
   std::vector<double> stress;  ///< nominal [Pa], first 0, not decreasing
 
   [[nodiscard]] double operator()(double at) const;
-  [[nodiscard]] double largest_slope() const;  ///< [Pa]
+  [[nodiscard]] double slope(size_t piece) const;  ///< between points piece and piece + 1 [Pa]
+  [[nodiscard]] double largest_slope() const;   ///< [Pa]
+  [[nodiscard]] double smallest_slope() const;  ///< smallest one above zero; 0 if there is none [Pa]
 };
 
 /// Ply material. Modes are decoupled, as in the seed ("Transient Nonlinear Finite Element Model").

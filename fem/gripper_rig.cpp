@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -214,9 +215,11 @@ void GripperRig::meet_constraints(const State& state, double dt, RigScratch& s, 
     s.impulse[k] = 0;
   }
   factorise(s);
+  double error = 0;
+  const double round_off = 4 * std::numeric_limits<double>::epsilon() * state.pads.front().centre.norm();
   for (int iteration = 0; iteration < kConstraintIterations; ++iteration) {
-    const double error = residuals(state, dt, s);
-    if (error <= kConstraintTolerance * rig_.spacing) {
+    error = residuals(state, dt, s);
+    if (error <= kConstraintTolerance * rig_.spacing + round_off) {
       record.largest_link_error = std::max(record.largest_link_error, error);
       return;
     }
@@ -235,6 +238,7 @@ void GripperRig::meet_constraints(const State& state, double dt, RigScratch& s, 
       if (rows_[k].j >= 0) push(s, rows_[k].j, -impulse * s.direction[k]);
     }
   }
+  record.largest_link_error = std::max(record.largest_link_error, error);
   record.converged = false;
 }
 

@@ -11,6 +11,7 @@ namespace {
 void divide(std::vector<double>& lines, double end, double mesh_size) {
   constexpr double kSlack = 1e-9;  // so that 100 mm / 10 mm gives 10 cells, not 11
   const double start = lines.back();
+  if (end - start <= kSlack * mesh_size) return;  // a place on the edge
   const int cells = std::max(1, int(std::ceil((end - start) / mesh_size - kSlack)));
   for (int k = 1; k <= cells; ++k) lines.push_back(k == cells ? end : start + (end - start) * k / cells);
 }

@@ -17,6 +17,9 @@ double gyration_squared(double thickness, double area, double translation, doubl
   return std::max(thickness * thickness / 12 + kElementShare * area, rotation / translation);
 }
 
+/// Largest angle per step of a pad on its actuator: its critical damping, explicit, is stable up to it.
+constexpr double kServoStep = 0.5;
+
 }  // namespace
 
 Model::Model(Scene scene) : scene_(std::move(scene)) {
@@ -55,12 +58,20 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   alpha_ = scene_.damping.value_or(0) / std::sqrt(options.mass_scaling);
 
   std::vector<int> held = scene_.clamped;
+  for (const int node : held) mass_[size_t(node)] = 0;
   if (scene_.rig) {
     const Eigen::Rotation2Dd turn(scene_.angle);
     std::vector<Eigen::Vector2d> place;
     for (int g = 0; g < scene_.rig->count(); ++g) place.emplace_back(scene_.position + turn * scene_.rig->place(g));
     rig_.emplace(*scene_.rig, mesh.rest, mass_, inertia_, place, scene_.angle);
+    for (const int node : rig_->tied()) {
+      if (mass_[size_t(node)] == 0) throw std::invalid_argument("a node under a pad is clamped");
+    }
     held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
+    if (std::sqrt(scene_.rig->actuator_stiffness / scene_.rig->pad_mass) * dt() > kServoStep) {
+      throw std::invalid_argument("the actuators are too stiff for the time step: lower grippers.actuator_stiffness or "
+                                  "raise grippers.pad_mass");
+    }
   }
   for (const int node : held) mass_[size_t(node)] = inertia_[size_t(node)] = 0;
   for (size_t k = 0; k < n; ++k) {
@@ -87,7 +98,7 @@ State Model::flat_state(double height) const {
     state.stuck.assign(padded(n), 0.0);
   }
   const Eigen::Rotation2Dd turn(scene_.angle);
-  for (size_t k = 0; k < padded(n); ++k) {  // padding repeats the last node: finite and never read back
+  for (size_t k = 0; k < padded(n); ++k) {  // padding repeats the last node and has no mass
     const Eigen::Vector2d xy = scene_.position + turn * scene_.mesh.rest[std::min(k, size_t(n) - 1)];
     state.x.x[k] = xy.x();
     state.x.y[k] = xy.y();

@@ -21,6 +21,8 @@ class Monitor {
   void close(const State& state, RunResult& result) const;
 
  private:
+  static bool fail(const State& state, const std::string& what, RunResult& result);
+
   const Model& model_;
   double largest_balance_ = 0;
 };

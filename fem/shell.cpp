@@ -8,9 +8,10 @@ namespace drapeplan {
 namespace {
 
 constexpr double kShearCorrection = 5.0 / 6;      // Reissner's factor for a homogeneous section; seed, Eq. (14)
-constexpr double kTabulatedStrain = 0.02;         // strains beyond it follow the last piece
+constexpr double kTabulatedStrain = 0.02;         // at least; beyond the table the last piece goes on
+constexpr double kFibreStep = 4e-5;               // strain per piece: the power law of tension is met to 1e-5 of its end
 constexpr double kTabulatedSine = 0.98;           // 78.5 degrees; tau / cos g goes on linearly from there
-constexpr int kFibreIntervals = 1000, kShearIntervals = 490;
+constexpr int kShearIntervals = 490;
 
 /// A run of kLanes elements; the last one is filled up with copies of its last element that have no area.
 struct Block {
@@ -25,16 +26,15 @@ KernelMaterial kernel_material(const Fabric& fabric, const FemOptions& options) 
   material.thickness = fabric.thickness;
   material.transverse = kShearCorrection * fabric.transverse_shear_modulus * fabric.thickness;
   const auto fibre = [&](double e) { return e >= 0 ? fabric.tension(e) : -fabric.compression(-e); };
-  material.fibre = Lookup(fibre, -kTabulatedStrain, kTabulatedStrain, kFibreIntervals);
+  const double lower = -std::max(kTabulatedStrain, fabric.compression.strain.back());
+  const double upper = std::max(kTabulatedStrain, fabric.tension.strain.back());
+  material.fibre = Lookup(fibre, lower, upper, int(std::lround((upper - lower) / kFibreStep)));
   const auto shear = [&](double sine) {
     const double angle = std::asin(std::abs(sine));
     return std::copysign(fabric.shear(angle) / std::cos(angle), sine);
   };
   material.shear = Lookup(shear, -kTabulatedSine, kTabulatedSine, kShearIntervals);
-  const size_t last = fabric.compression.strain.size() - 1;
-  const double softest = (fabric.compression.stress[last] - fabric.compression.stress[last - 1]) /
-                         (fabric.compression.strain[last] - fabric.compression.strain[last - 1]);
-  material.hourglass_modulus = options.hourglass * softest;
+  material.hourglass_modulus = options.hourglass * fabric.compression.smallest_slope();
   return material;
 }
 

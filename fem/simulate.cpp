@@ -11,6 +11,7 @@
 namespace drapeplan {
 namespace {
 
+constexpr double kMostSteps = 1e10;  // weeks of run time: a wrong unit or a degenerate mesh, not a plan
 constexpr int kLooks = 200;  // times per run at which the monitor looks: 0.5 % of the run is lost at most by divergence
 
 /// Height of the flat ply at the start: all joints stand at the same height.
@@ -39,7 +40,9 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   State state = model.flat_state(start_height(model, request));
   const double duration = request.duration > 0 ? request.duration : (request.schedule ? request.schedule->duration() : 0);
   if (!(duration > 0)) throw std::invalid_argument("simulate: neither a schedule nor a duration is given");
-  const auto steps = std::int64_t(std::ceil(duration / drive.time_scaling / dt));
+  const double count = std::ceil(duration / drive.time_scaling / dt);
+  if (!(count <= kMostSteps)) throw std::invalid_argument("simulate: the run would need more than 1e10 steps");
+  const auto steps = std::int64_t(count);
   const auto instant = [steps](std::int64_t k, std::int64_t of) { return k * steps / of; };
 
   RunResult result;
@@ -64,7 +67,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
 
     if (state.step >= instant(look, kLooks)) {
       ++look;
-      running = monitor.look(state, result);
+      running = monitor.look(state, result) && record.converged;
       if (state.step >= instant(tenth, 10)) {
         ++tenth;
         monitor.note_kinetic_ratio(state, result);
@@ -76,7 +79,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   result.final = take_snapshot(model, state, drive);
   if (running) monitor.close(state, result);
   if (running && frame < frames) request.observe(result.final);
-  if (running && !record.converged) {
+  if (!record.converged && report.status == RunStatus::done) {
     report.status = RunStatus::diverged;
     report.message = "interlinks could not be kept at their length";
   }

@@ -1,5 +1,6 @@
 #include "fem/workspace.hpp"
 
+// Entry 0 is the shell's: it always has forces and moments.
 namespace drapeplan {
 namespace {
 
@@ -32,7 +33,10 @@ void kick_nodes(const Model& model, State& state, Workspace& work) {
   const Lanes keep((1 - 0.5 * alpha * dt) / (1 + 0.5 * alpha * dt)), gain(dt / (1 + 0.5 * alpha * dt)), half(0.5);
   for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
     Vec3<Lanes> force = work.entries[0].force.lanes(n), moment = work.entries[0].moment.lanes(n);
-    for (size_t k = 1; k < work.entries.size(); ++k) force = force + work.entries[k].force.lanes(n);
+    for (size_t k = 1; k < work.entries.size(); ++k) {
+      force = force + work.entries[k].force.lanes(n);
+      if (!work.entries[k].moment.x.empty()) moment = moment + work.entries[k].moment.lanes(n);
+    }
     const Vec3<Lanes> v = state.v.lanes(n), w = state.w.lanes(n), d = state.d.lanes(n);
     const Vec3<Lanes> v_new = keep * v + (gain * load(&model.inverse_mass()[n])) * force;
     moment = moment - dot(moment, d) * d;  // a director cannot be stretched
@@ -50,7 +54,10 @@ void kick_pads(const Model& model, State& state, const RigDrive& drive, Workspac
     const auto n = size_t(tied[k]);
     work.rig.force[k] = at(work.entries[0].force, n);
     work.rig.moment[k] = at(work.entries[0].moment, n);
-    for (size_t e = 1; e < work.entries.size(); ++e) work.rig.force[k] += at(work.entries[e].force, n);
+    for (size_t e = 1; e < work.entries.size(); ++e) {
+      work.rig.force[k] += at(work.entries[e].force, n);
+      if (!work.entries[e].moment.x.empty()) work.rig.moment[k] += at(work.entries[e].moment, n);
+    }
   }
   model.rig()->kick(state, drive, model.dt(), model.alpha(), work.rig, record);
   for (size_t k = 0; k < tied.size(); ++k) {
@@ -100,13 +107,17 @@ void drift_nodes(const Model& model, State& state) {
   }
 }
 
-double kinetic_energy(const Model& model, const State& state) {
+double ply_kinetic_energy(const Model& model, const State& state) {
   Lanes sum(0.0);
   for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
     const Vec3<Lanes> v = state.v.lanes(n), w = state.w.lanes(n);
     sum += load(&model.mass()[n]) * dot(v, v) + load(&model.inertia()[n]) * dot(w, w);
   }
-  return 0.5 * stdx::reduce(sum) + (model.rig() ? model.rig()->kinetic_energy(state) : 0.0);
+  return 0.5 * stdx::reduce(sum);
+}
+
+double kinetic_energy(const Model& model, const State& state) {
+  return ply_kinetic_energy(model, state) + (model.rig() ? model.rig()->kinetic_energy(state) : 0.0);
 }
 
 }  // namespace drapeplan

@@ -31,7 +31,8 @@ void book_work(const Model& model, State& state, const Workspace& work);
 /// Positions and directors from t to t + dt.
 void drift_nodes(const Model& model, State& state);
 
-/// Kinetic energy of nodes and pads [J].
+/// Kinetic energy of the ply's free nodes; of nodes and pads [J].
+double ply_kinetic_energy(const Model& model, const State& state);
 double kinetic_energy(const Model& model, const State& state);
 
 }  // namespace drapeplan
