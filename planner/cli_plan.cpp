@@ -120,14 +120,15 @@ std::vector<std::filesystem::path> run_folders(const PlanVerbOptions& options) {
 }
 
 /// Two cases in one folder would overwrite each other: prints an error for each such pair.
-bool share_a_folder(const std::vector<std::string>& files, const std::vector<std::filesystem::path>& folders) {
+bool share_a_folder(const std::vector<std::string>& files,
+                    const std::vector<std::filesystem::path>& folders) {
   std::map<std::filesystem::path, std::string> owner;
   bool shared = false;
   for (size_t k = 0; k < files.size(); ++k) {
     const auto [found, fresh] = owner.try_emplace(folders[k], files[k]);
     if (fresh) continue;
-    std::cerr << files[k] << ": would be planned in the folder of " << found->second << ", " << folders[k].string()
-              << "; plan them in two calls with different --out, or rename one\n";
+    std::cerr << files[k] << ": would be planned in the folder of " << found->second << ", "
+              << folders[k].string() << "; plan them in two calls with different --out, or rename one\n";
     shared = true;
   }
   return shared;

@@ -1,6 +1,7 @@
 // Reads one value of a JSON file, for shell scripts.
 // Usage: json_value FILE POINTER [LOW HIGH]
-// Exit 1 if the file is not exactly one JSON document, has no such value, or its number is not within LOW..HIGH.
+// Exit 1 if the file is not exactly one JSON document, has no such value, or its number is not within
+// LOW..HIGH.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
