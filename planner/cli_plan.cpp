@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -109,31 +110,65 @@ json plan_case(Case value, const PlanVerbOptions& options, const std::filesystem
   return out;
 }
 
+/// A run directory per case: --out itself for a single case, else a folder below it by the case file's name.
+std::vector<std::filesystem::path> run_folders(const PlanVerbOptions& options) {
+  const std::filesystem::path root = options.common.out.empty() ? "out" : options.common.out;
+  if (options.files.size() == 1 && !options.common.out.empty()) return {root};
+  std::vector<std::filesystem::path> folders;
+  for (const std::string& file : options.files) folders.push_back(root / std::filesystem::path(file).stem());
+  return folders;
+}
+
+/// Two cases in one folder would overwrite each other: prints an error for each such pair.
+bool share_a_folder(const std::vector<std::string>& files,
+                    const std::vector<std::filesystem::path>& folders) {
+  std::map<std::filesystem::path, std::string> owner;
+  bool shared = false;
+  for (size_t k = 0; k < files.size(); ++k) {
+    const auto [found, fresh] = owner.try_emplace(folders[k], files[k]);
+    if (fresh) continue;
+    std::cerr << files[k] << ": would be planned in the folder of " << found->second << ", "
+              << folders[k].string() << "; plan them in two calls with different --out, or rename one\n";
+    shared = true;
+  }
+  return shared;
+}
+
+/// Plans one case and adds its result to the list: of a case that could not be planned, its name and why.
+ExitCode plan_and_add(Case value, const std::string& file, const PlanVerbOptions& options,
+                      const std::filesystem::path& folder, json& results) {
+  const std::string name = value.name;
+  const auto failed = [&](const std::string& reason) {
+    std::cerr << file << ": " << reason << '\n';
+    results.push_back({{"case", name}, {"status", "not finished"}, {"reason", reason}});
+  };
+  try {
+    results.push_back(plan_case(std::move(value), options, folder));
+    return kDone;
+  } catch (const std::invalid_argument& error) {
+    failed(error.what());
+    return kInputWrong;
+  } catch (const std::exception& error) {
+    failed("not finished: " + std::string(error.what()) + "; what was done is kept in " + folder.string());
+    return kNotFinished;
+  }
+}
+
 int plan_all(const PlanVerbOptions& options) {
   std::vector<Case> cases;
-  bool wrong = false;
+  const std::vector<std::filesystem::path> folders = run_folders(options);
+  bool wrong = share_a_folder(options.files, folders);
   for (const std::string& file : options.files) {
     std::optional<Case> value = load_case(file, options.common, {"grippers", "material"});
     wrong = wrong || !value;
     if (value) cases.push_back(std::move(*value));
   }
   if (wrong) return kInputWrong;
-  const std::filesystem::path root = options.common.out.empty() ? "out" : options.common.out;
-  const bool single = cases.size() == 1 && !options.common.out.empty();
   json results = json::array();
   int code = kDone;
   for (size_t k = 0; k < cases.size(); ++k) {
-    const std::filesystem::path folder = single ? root : root / std::filesystem::path(options.files[k]).stem();
-    try {
-      results.push_back(plan_case(std::move(cases[k]), options, folder));
-    } catch (const std::invalid_argument& error) {
-      std::cerr << options.files[k] << ": " << error.what() << '\n';
-      code = kInputWrong;
-    } catch (const std::exception& error) {
-      std::cerr << options.files[k] << ": not finished: " << error.what() << "; what was done is kept in "
-                << folder.string() << '\n';
-      if (code == kDone) code = kNotFinished;
-    }
+    const ExitCode one = plan_and_add(std::move(cases[k]), options.files[k], options, folders[k], results);
+    if (code == kDone || one == kInputWrong) code = one;
   }
   if (options.common.json) {
     std::cout << (results.size() == 1 ? results[0] : json{{"cases", results}}).dump(2) << '\n';

@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# simulate: its document, same bits twice, cases with and without grippers, wrong input.
+# Usage: simulate.sh DRAPEPLAN SOURCE_DIR JSON_VALUE
+set -uo pipefail
+. "$(dirname "$0")/kit.sh"
+
+# The document that scripts rely on.
+expect 0 simulate "$quick" --json --fidelity screen
+cp "$work/stdout" "$work/first.json"
+for key in element_updates_per_second wall_seconds state_hash status; do
+  within "$work/first.json" "/$key"
+done
+for key in kinetic internal external friction damping hourglass constraint; do
+  within "$work/first.json" "/energy/$key" -1e3 1e3
+done
+for key in max_separation rms_separation wrinkled_area max_boundary_offset rms_boundary_offset max_shear_deg \
+  max_fibre_strain max_actuator_force duration objective; do
+  within "$work/first.json" "/score/$key" 0 1e6
+done
+within "$work/first.json" /energy/balance_error 0 1e-6
+within "$work/first.json" /energy/external 1e-3 10   # work was done at all
+within "$work/first.json" /steps 1000 1e9
+within "$work/first.json" /dt 1e-9 1e-2
+
+# Same bits again, and from the case with all defaults filled in.
+expect 0 simulate "$quick" --json --fidelity screen --out "$work/out" --frames 2
+same "$(value "$work/first.json" /state_hash)" "$(value "$work/stdout" /state_hash)" "two runs"
+same_file "$work/stdout" "$work/out/result.json"
+for file in resolved.json schedule.json schedule.csv ply.pvd ply_000.vtu ply_001.vtu mold.vtu drape.svg; do
+  [ -s "$work/out/$file" ] || fail "simulate: $file is missing or empty"
+done
+expect 0 simulate "$work/out/resolved.json" --json --fidelity screen
+same "$(value "$work/first.json" /state_hash)" "$(value "$work/stdout" /state_hash)" "resolved case"
+expect 0 simulate "$quick" --json --fidelity screen --schedule "$work/out/schedule.json"
+same "$(value "$work/first.json" /state_hash)" "$(value "$work/stdout" /state_hash)" "schedule read from its file"
+
+# Another schedule is another run: the hash does see the motion.
+expect 0 simulate "$quick" --json --fidelity screen --schedule wave
+[ "$(value "$work/first.json" /state_hash)" != "$(value "$work/stdout" /state_hash)" ] || fail "wave equals uniform"
+
+expect 0 simulate "$quick" --fidelity screen --quiet
+[ ! -s "$work/stdout" ] && [ ! -s "$work/stderr" ] || fail "--quiet is not quiet"
+
+# The heavy elastica at rest: exact tip drop 88.2175 mm (w L^3 / (E I) = 6.695 for this strip, shooting).
+# Damping alpha = 22 / s is twice the first angular frequency, sqrt(12.36 E I / (m L^4)) = 11 / s, so what moves decays
+# as (1 + 11 t / s) exp(-11 t / s): after 1 s 2e-4 of the drop is left. Scaling the mass by 4 doubles all times: 2 s.
+expect 0 simulate "$source/cases/elastica.json" --json --set 'fem.mesh_size=7.5 mm' --set fem.mass_scaling=4 \
+  --set 'duration=2 s'
+within "$work/stdout" /probes/tip/displacement/2 -0.0886586 -0.0877764   # 0.5 %
+within "$work/stdout" /probes/tip/displacement/1 -1e-6 1e-6              # stays in its plane
+within "$work/stdout" /energy/kinetic 0 1e-9                             # J; 0.4 mJ of work were done: at rest
+within "$work/stdout" /energy/balance_error 0 1e-6
+
+refuse '/fidelities: there is no fidelity "finest"' simulate "$quick" --fidelity finest
+refuse "$work/none.json" simulate "$quick" --schedule "$work/none.json"
+refuse '/ply/widht: unknown key' simulate "$quick" --set 'ply.widht=1 mm'
+refuse '/fem/mesh_size: "-1 mm": out of range' simulate "$quick" --set 'fem.mesh_size=-1 mm'
+refuse 'needs the section "material"' simulate "$source/cases/plane-mapping.json"
+# A schedule of another rig: one gripper of nine is not there.
+sed 's/"gripper": \[3, 3\]/"gripper": [4, 3]/' "$work/out/schedule.json" >"$work/other.json"
+cmp -s "$work/out/schedule.json" "$work/other.json" && fail "the schedule file was not changed"
+refuse "$work/other.json" simulate "$quick" --schedule "$work/other.json"
+echo '{"format": "drapeplan-schedule 1", "blend_time": 0.1, "grippers": []}' >"$work/empty.json"
+refuse "$work/empty.json" simulate "$quick" --schedule "$work/empty.json"
+# What cannot be written is named, and is no fault of the input.
+touch "$work/file"
+expect 3 simulate "$quick" --fidelity screen --quiet --out "$work/file/below"
+grep -qF "$work/file/below" "$work/stderr" || fail "no path: $(cat "$work/stderr")"
+finish 45
