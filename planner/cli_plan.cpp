@@ -10,6 +10,7 @@
 #include "planner/plan.hpp"
 #include "planner/result_fields.hpp"
 #include "planner/run_files.hpp"
+#include "planner/text.hpp"
 
 namespace drapeplan {
 namespace {
@@ -84,14 +85,19 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
           {"history", history_json(search)}};
 }
 
-/// Plans one case into its folder and returns its result; throws what went wrong.
-json plan_case(Case value, const PlanVerbOptions& options, const std::filesystem::path& folder) {
+struct PlannedCase {
+  json result;
+  bool valid = false;  ///< at least the best drape could be simulated
+};
+
+/// Plans one case into its folder; throws what went wrong.
+PlannedCase plan_case(Case value, const PlanVerbOptions& options, const std::filesystem::path& folder) {
   const bool talk = !options.common.quiet;
   const std::string name = value.name;
   const DrapeProblem problem(std::move(value));
   if (talk) {
     std::cerr << name << ": mapped, shear at most " << problem.mapping().max_shear_deg << " deg\n  terms:";
-    for (const std::string& term : problem.model("report").term_names()) std::cerr << " [" << term << "]";
+    for (const std::string& term : problem.model(kReport).term_names()) std::cerr << " [" << term << "]";
     std::cerr << "\n  reach: " << explain_reach(problem.reach_problem(), problem.reach()) << '\n';
   }
   ProgressLine line;
@@ -107,7 +113,7 @@ json plan_case(Case value, const PlanVerbOptions& options, const std::filesystem
     std::cout << result.search.evaluations << " evaluations (" << result.search.failed_evaluations << " failed) in "
               << std::llround(result.wall_seconds) << " s; report: " << (folder / "report.html").string() << std::endl;
   }
-  return out;
+  return {out, result.best.score.valid};
 }
 
 /// A run directory per case: --out itself for a single case, else a folder below it by the case file's name.
@@ -143,13 +149,16 @@ ExitCode plan_and_add(Case value, const std::string& file, const PlanVerbOptions
     results.push_back({{"case", name}, {"status", "not finished"}, {"reason", reason}});
   };
   try {
-    results.push_back(plan_case(std::move(value), options, folder));
-    return kDone;
+    PlannedCase planned = plan_case(std::move(value), options, folder);
+    results.push_back(std::move(planned.result));
+    if (!planned.valid) std::cerr << file << ": no drape could be simulated to its end\n";
+    return planned.valid ? kDone : kNotFinished;
   } catch (const std::invalid_argument& error) {
     failed(error.what());
     return kInputWrong;
   } catch (const std::exception& error) {
-    failed("not finished: " + std::string(error.what()) + "; what was done is kept in " + folder.string());
+    const bool begun = std::filesystem::exists(folder);
+    failed("not finished: " + std::string(error.what()) + (begun ? "; what was done is kept in " + folder.string() : ""));
     return kNotFinished;
   }
 }

@@ -9,6 +9,7 @@
 #include "planner/result_fields.hpp"
 #include "planner/run_files.hpp"
 #include "planner/schedule_file.hpp"
+#include "planner/text.hpp"
 #include "planner/vtu.hpp"
 
 namespace drapeplan {
@@ -144,7 +145,7 @@ int run_simulate(const SimulateOptions& options) {
     std::cerr << options.file << ": not finished: " << error.what() << '\n';
     return kNotFinished;
   } catch (const std::domain_error& error) {
-    std::cerr << options.file << ": the ply cannot be mapped: " << error.what() << '\n';
+    std::cerr << options.file << ": the ply cannot be mapped or reached: " << error.what() << '\n';
     return kNotFinished;
   }
 }

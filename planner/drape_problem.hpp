@@ -16,6 +16,9 @@
 
 namespace drapeplan {
 
+/// The fidelity at which results are claimed; every case has it.
+inline constexpr const char* kReport = "report";
+
 /// The FE scene of a case at a fidelity: sections that are absent add nothing.
 /// @throws std::invalid_argument if the scene cannot be built.
 Scene scene_of(const Case& value, const FemOptions& options);

@@ -1,7 +1,6 @@
 #include "planner/evaluation_log.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -10,6 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "fem/hash.hpp"
 #include "planner/result_fields.hpp"
 
 namespace drapeplan {
@@ -113,22 +113,18 @@ LogFile read_log(const std::string& path) {
 }  // namespace
 
 std::uint64_t schedule_hash(const Schedule& schedule) {
-  constexpr std::uint64_t kOffset = 14695981039346656037ULL, kPrime = 1099511628211ULL;  // FNV-1a, 64 bit
-  std::uint64_t hash = kOffset;
-  const auto add = [&](std::uint64_t bits) {
-    for (int byte = 0; byte < 8; ++byte) hash = (hash ^ ((bits >> (8 * byte)) & 0xff)) * kPrime;
-  };
-  const auto add_double = [&](double value) { add(std::bit_cast<std::uint64_t>(value == 0 ? 0.0 : value)); };
+  Fnv1a hash;
+  const auto add_double = [&hash](double value) { hash.add(value == 0 ? 0.0 : value); };
   add_double(schedule.blend_time);
-  add(schedule.paths.size());
+  hash.add(std::uint64_t(schedule.paths.size()));
   for (const auto& path : schedule.paths) {
-    add(path.size());
+    hash.add(std::uint64_t(path.size()));
     for (const Knot& knot : path) {
       add_double(knot.time);
       add_double(knot.z);
     }
   }
-  return hash;
+  return hash.value();
 }
 
 EvaluationLog::EvaluationLog(const std::string& path, std::uint64_t case_hash) {

@@ -1,9 +1,12 @@
 #include "planner/plan.hpp"
 
+#include <array>
 #include <chrono>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "fem/hash.hpp"
 #include "planner/case_file.hpp"
 #include "planner/parallel.hpp"
 
@@ -11,7 +14,6 @@ namespace drapeplan {
 namespace {
 
 constexpr int kFrames = 21;  // of a reported drape, for ParaView: twenty equal parts of the sequence
-constexpr const char* kReport = "report";
 
 /// Drapes at the reporting fidelity, kept with their frames so that pictures need no second run.
 class ReportedDrapes {
@@ -34,11 +36,12 @@ class ReportedDrapes {
 }  // namespace
 
 std::uint64_t case_hash(const Case& value) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
-  for (const char byte : resolved_case(value).dump()) {
-    hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
-  }
-  return hash;
+  nlohmann::json relevant = resolved_case(value);
+  // Words, published results and budgets change no evaluation: a search may go on with other ones.
+  for (const char* key : {"description", "references", "optimise"}) relevant.erase(key);
+  Fnv1a hash;
+  hash.add(std::string_view(relevant.dump()));
+  return hash.value();
 }
 
 PlanResult plan(const DrapeProblem& problem, const PlanOptions& options,

@@ -17,7 +17,7 @@ struct PlanOptions {
   int threads = 0;            ///< 0: one per core
 };
 
-/// What a plan run found; files are written by `write_plan` (plan_files.hpp).
+/// What a plan run found; files are written by `write_plan` (run_files.hpp).
 struct PlanResult {
   StagedResult search;
   Drape uniform, wave, best;  ///< at the reporting fidelity, with frames
@@ -30,7 +30,7 @@ struct PlanResult {
 PlanResult plan(const DrapeProblem& problem, const PlanOptions& options,
                 const std::function<void(const Progress&)>& progress);
 
-/// Hash of everything that an evaluation depends on: the resolved case.
+/// Hash of what an evaluation depends on: the resolved case without words, references and budgets.
 std::uint64_t case_hash(const Case& value);
 
 }  // namespace drapeplan

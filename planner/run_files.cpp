@@ -1,8 +1,10 @@
 #include "planner/run_files.hpp"
 
+#include <array>
+#include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 #include "planner/charts.hpp"
@@ -10,13 +12,13 @@
 #include "planner/result_fields.hpp"
 #include "planner/schedule_file.hpp"
 #include "planner/scoring.hpp"
+#include "planner/text.hpp"
 #include "planner/vtu.hpp"
 
 namespace drapeplan {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* kReport = "report";
 
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
@@ -76,13 +78,6 @@ std::vector<std::string> notes_of(const DrapeProblem& problem) {
 }
 
 }  // namespace
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) throw std::runtime_error(file.string() + ": cannot be written");
-}
 
 DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
                        const std::string& title) {

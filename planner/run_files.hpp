@@ -14,9 +14,6 @@ namespace drapeplan {
 DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
                        const std::string& title);
 
-/// Writes text to a file. @throws std::runtime_error if it cannot.
-void write_text(const std::filesystem::path& file, const std::string& text);
-
 /// Writes `frames` as NAME_000.vtu ... with the collection NAME.pvd.
 void write_frames(const std::filesystem::path& folder, const std::string& name, const Mesh& mesh,
                   const std::vector<Snapshot>& frames, const Mold* mold, double thickness);
