@@ -7,7 +7,8 @@ namespace {
 
 namespace stdx = std::experimental;
 
-/// Square of the steepest slope that can be touched (84 degrees): at a vertical wall a height field has no distance.
+/// Square of the steepest slope that can be touched (84 degrees): at a vertical wall a height field has no
+/// distance.
 constexpr double kSteepest2 = 100;
 
 /// Masked minimum of one, where the divisor may be zero.
@@ -21,11 +22,17 @@ template <bool kFriction>
 class ContactTerm final : public Term {
  public:
   ContactTerm(const Mold& mold, double friction, std::vector<double> stiffness, double surface)
-      : mold_(mold), friction_(friction), stiffness_(std::move(stiffness)), surface_(surface), count_(int(stiffness_.size())) {
+      : mold_(mold),
+        friction_(friction),
+        stiffness_(std::move(stiffness)),
+        surface_(surface),
+        count_(int(stiffness_.size())) {
     stiffness_.resize(padded(count_), 1.0);
   }
 
-  [[nodiscard]] std::string_view name() const override { return kFriction ? "contact with friction" : "contact"; }
+  [[nodiscard]] std::string_view name() const override {
+    return kFriction ? "contact with friction" : "contact";
+  }
 
   [[nodiscard]] std::vector<Forces> entries() const override {
     std::vector<Forces> list{{Book::contact, VectorField(count_), {}}};
@@ -50,7 +57,8 @@ class ContactTerm final : public Term {
   }
 
  private:
-  void lanes(State& state, Forces* entries, size_t at, const Lanes& z, const Lanes& zx, const Lanes& zy) const {
+  void lanes(State& state, Forces* entries, size_t at, const Lanes& z, const Lanes& zx,
+             const Lanes& zy) const {
     const Lanes zero(0.0), one(1.0);
     const Vec3<Lanes> x = state.x.lanes(at);
     const Lanes slope2 = zx * zx + zy * zy;
@@ -114,8 +122,8 @@ class GravityTerm final : public Term {
 
 }  // namespace
 
-std::unique_ptr<Term> make_contact(const Mold& mold, std::optional<double> friction, std::vector<double> stiffness,
-                                   double surface) {
+std::unique_ptr<Term> make_contact(const Mold& mold, std::optional<double> friction,
+                                   std::vector<double> stiffness, double surface) {
   if (friction) return std::make_unique<ContactTerm<true>>(mold, *friction, std::move(stiffness), surface);
   return std::make_unique<ContactTerm<false>>(mold, 0.0, std::move(stiffness), surface);
 }

@@ -11,13 +11,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kServoDamping = 1;          // damping ratio of a joint on its actuator: a servo does not ring
-constexpr double kRimSlack = 1e-9;           // nodes on the rim belong to the pad, whatever the round-off
+constexpr double kServoDamping = 1;  // damping ratio of a joint on its actuator: a servo does not ring
+constexpr double kRimSlack = 1e-9;   // nodes on the rim belong to the pad, whatever the round-off
 constexpr double kConstraintTolerance = 1e-12;  // of the grippers' spacing
 constexpr int kConstraintIterations = 20;
 
 std::string gripper_name(const RigOptions& rig, int index) {
-  return "gripper [" + std::to_string(index % rig.columns + 1) + ", " + std::to_string(index / rig.columns + 1) + "]";
+  return "gripper [" + std::to_string(index % rig.columns + 1) + ", " +
+         std::to_string(index / rig.columns + 1) + "]";
 }
 
 /// v turned by the rotation vector `turn` (exponential map).
@@ -27,13 +28,15 @@ Vector3d turned(const Vector3d& turn, const Vector3d& v) {
   return Eigen::AngleAxisd(angle, turn / angle) * v;
 }
 
-void book(State& state, Book entry, double work) { state.work[size_t(entry)] += work; }
+void book(State& state, Book entry, double work) {
+  state.work[size_t(entry)] += work;
+}
 
 }  // namespace
 
-GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>& rest, const std::vector<double>& mass,
-                       const std::vector<double>& inertia, std::vector<Eigen::Vector2d> place,
-                       double turn)
+GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>& rest,
+                       const std::vector<double>& mass, const std::vector<double>& inertia,
+                       std::vector<Eigen::Vector2d> place, double turn)
     : rig_(rig), place_(std::move(place)), turn_(turn) {
   std::vector<char> taken(rest.size(), 0);
   for (int g = 0; g < rig.count(); ++g) {
@@ -42,7 +45,8 @@ GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>
     for (size_t n = 0; n < rest.size(); ++n) {
       const Eigen::Vector2d offset = rest[n] - rig.place(g);
       if (offset.norm() > rig.pad_radius * (1 + kRimSlack)) continue;
-      if (taken[n]) throw std::invalid_argument(gripper_name(rig, g) + " shares a ply node with another gripper");
+      if (taken[n])
+        throw std::invalid_argument(gripper_name(rig, g) + " shares a ply node with another gripper");
       taken[n] = 1;
       tied_.push_back(int(n));
       offset_.emplace_back(offset.x(), offset.y(), 0);
@@ -56,10 +60,12 @@ GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>
     pad.inertia = std::max(0.5 * pad.mass * rig.pad_radius * rig.pad_radius, spread);
     pads_.push_back(pad);
   }
-  for (const auto& [i, j] : interlinks(rig)) rows_.push_back({.i = i, .j = j, .axis = -1, .value = rig.spacing});
+  for (const auto& [i, j] : interlinks(rig))
+    rows_.push_back({.i = i, .j = j, .axis = -1, .value = rig.spacing});
   if (rig.fixed) {
     const int g = ((*rig.fixed)[1] - 1) * rig.columns + (*rig.fixed)[0] - 1;
-    for (int axis = 0; axis < 2; ++axis) rows_.push_back({.i = g, .j = -1, .axis = axis, .value = place_[size_t(g)][axis]});
+    for (int axis = 0; axis < 2; ++axis)
+      rows_.push_back({.i = g, .j = -1, .axis = axis, .value = place_[size_t(g)][axis]});
   }
   // Rows by the last gripper that they touch: their couplings then stay near the diagonal.
   std::stable_sort(rows_.begin(), rows_.end(),
@@ -160,7 +166,8 @@ Vector3d GripperRig::stop_moment(const Vector3d& normal) const {
   return -(rig_.actuator_stiffness * rig_.pad_radius * rig_.pad_radius * beyond) * axis;
 }
 
-/// Lengths and coordinates at t + dt less what they should be, for the velocities in s.next. Returns the largest.
+/// Lengths and coordinates at t + dt less what they should be, for the velocities in s.next. Returns the
+/// largest.
 double GripperRig::residuals(const State& state, double dt, RigScratch& s) const {
   for (size_t g = 0; g < pads_.size(); ++g) {
     s.next[g].centre = state.pads[g].centre + dt * s.next[g].velocity;
@@ -210,8 +217,9 @@ void GripperRig::meet_constraints(const State& state, double dt, RigScratch& s, 
     const Row& row = rows_[k];
     const auto i = size_t(row.i);
     s.direction[k] = row.j < 0 ? Vector3d(Vector3d::Unit(row.axis))
-                               : Vector3d((state.pads[i].centre + s.arm[i] - state.pads[size_t(row.j)].centre -
-                                           s.arm[size_t(row.j)]).normalized());
+                               : Vector3d((state.pads[i].centre + s.arm[i] -
+                                           state.pads[size_t(row.j)].centre - s.arm[size_t(row.j)])
+                                              .normalized());
     s.impulse[k] = 0;
   }
   factorise(s);
@@ -224,12 +232,14 @@ void GripperRig::meet_constraints(const State& state, double dt, RigScratch& s, 
       return;
     }
     for (size_t k = 0; k < rows_.size(); ++k) {  // forward
-      for (auto l = size_t(envelope_[k]); l < k; ++l) s.residual[k] -= s.factor[start_[k] + l] * s.residual[l];
+      for (auto l = size_t(envelope_[k]); l < k; ++l)
+        s.residual[k] -= s.factor[start_[k] + l] * s.residual[l];
       s.residual[k] /= s.factor[start_[k] + k];
     }
     for (size_t k = rows_.size(); k-- > 0;) {  // backward
       s.residual[k] /= s.factor[start_[k] + k];
-      for (auto l = size_t(envelope_[k]); l < k; ++l) s.residual[l] -= s.factor[start_[k] + l] * s.residual[k];
+      for (auto l = size_t(envelope_[k]); l < k; ++l)
+        s.residual[l] -= s.factor[start_[k] + l] * s.residual[k];
     }
     for (size_t k = 0; k < rows_.size(); ++k) {
       const double impulse = -s.residual[k] / dt;
@@ -259,8 +269,10 @@ void GripperRig::kick(State& state, const RigDrive& drive, double dt, double alp
     const Vector3d joint_v = mean_v + mean_w.cross(s.arm[g]);
     book(state, Book::actuator, dt * s.actuator[g] * joint_v.z());
     book(state, Book::stop, dt * s.stop[g].dot(mean_w));
-    book(state, Book::damping, -dt * alpha * (pads_[g].mass * s.free_mean_v[g].dot(mean_v) +
-                                              pads_[g].inertia * s.free_mean_w[g].dot(mean_w)));
+    book(
+        state, Book::damping,
+        -dt * alpha *
+            (pads_[g].mass * s.free_mean_v[g].dot(mean_v) + pads_[g].inertia * s.free_mean_w[g].dot(mean_w)));
     const Eigen::Matrix3d turn = pad.rotation.toRotationMatrix();
     for (auto k = size_t(pads_[g].first); k < size_t(pads_[g].last); ++k) {
       s.mean_v[k] = mean_v + mean_w.cross(turn * offset_[k]);
@@ -284,7 +296,8 @@ void GripperRig::drift(State& state, double dt) const {
     pad.centre += dt * pad.velocity;
     const Vector3d turn = dt * pad.angular_velocity;
     const double angle = turn.norm();
-    if (angle > 0) pad.rotation = (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * pad.rotation).normalized();
+    if (angle > 0)
+      pad.rotation = (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * pad.rotation).normalized();
     const Eigen::Matrix3d rotation = pad.rotation.toRotationMatrix();
     for (auto k = size_t(pads_[g].first); k < size_t(pads_[g].last); ++k) {
       const auto n = size_t(tied_[k]);

@@ -1,9 +1,10 @@
 // The gripper rig in motion: rigid pads tied to ply nodes, joints, actuators, interlinks, tilt stops.
 //
-// A pad is a rigid body with an isotropic inertia (so that it has no gyroscopic moment) that owns the nodes under it.
-// Its joint stands off along the pad's normal. The joint's height follows the schedule through a critically damped
-// spring with a force limit; interlinks and the fixed joint are constraints, met at the end of every step by impulses
-// along the directions at its start (SHAKE: Ryckaert, Ciccotti and Berendsen 1977) with Newton's method.
+// A pad is a rigid body with an isotropic inertia (so that it has no gyroscopic moment) that owns the nodes
+// under it. Its joint stands off along the pad's normal. The joint's height follows the schedule through a
+// critically damped spring with a force limit; interlinks and the fixed joint are constraints, met at the end
+// of every step by impulses along the directions at its start (SHAKE: Ryckaert, Ciccotti and Berendsen 1977)
+// with Newton's method.
 #pragma once
 
 #include <array>
@@ -18,22 +19,24 @@ namespace drapeplan {
 
 /// What the rig measures of itself over a run.
 struct RigRecord {
-  double largest_force = 0;          ///< of an actuator [N]
-  double largest_link_error = 0;     ///< [m]
-  bool converged = true;             ///< every step met the constraints
+  double largest_force = 0;       ///< of an actuator [N]
+  double largest_link_error = 0;  ///< [m]
+  bool converged = true;          ///< every step met the constraints
 };
 
 /// Scratch of one run: sums over tied nodes, free and mean velocities, the constraint system.
 struct RigScratch {
-  std::vector<Eigen::Vector3d> force, moment;    ///< in: on tied nodes and their directors [N], [N m]
-  std::vector<Eigen::Vector3d> mean_v, mean_w;   ///< out: means of the half-step velocities of tied nodes and directors
-  std::vector<PadState> next;                    ///< pads with their velocities at t + dt/2
-  std::vector<Eigen::Vector3d> arm, next_arm;    ///< joints from their pads' centres at t and t + dt [m]
-  std::vector<Eigen::Vector3d> free_mean_v, free_mean_w;  ///< mean velocities before constraints: what damping sees
-  std::vector<Eigen::Vector3d> stop, joint_v;    ///< moments of tilt stops [N m]; mean velocities of joints
-  std::vector<double> actuator;                  ///< forces [N]
-  std::vector<Eigen::Vector3d> direction;        ///< of each constraint row
-  std::vector<double> residual, impulse, factor; ///< of each row; envelope of the Cholesky factor
+  std::vector<Eigen::Vector3d> force, moment;  ///< in: on tied nodes and their directors [N], [N m]
+  std::vector<Eigen::Vector3d> mean_v,
+      mean_w;                  ///< out: means of the half-step velocities of tied nodes and directors
+  std::vector<PadState> next;  ///< pads with their velocities at t + dt/2
+  std::vector<Eigen::Vector3d> arm, next_arm;  ///< joints from their pads' centres at t and t + dt [m]
+  std::vector<Eigen::Vector3d> free_mean_v,
+      free_mean_w;                                ///< mean velocities before constraints: what damping sees
+  std::vector<Eigen::Vector3d> stop, joint_v;     ///< moments of tilt stops [N m]; mean velocities of joints
+  std::vector<double> actuator;                   ///< forces [N]
+  std::vector<Eigen::Vector3d> direction;         ///< of each constraint row
+  std::vector<double> residual, impulse, factor;  ///< of each row; envelope of the Cholesky factor
 };
 
 /// The schedule as the simulation plays it.
@@ -44,8 +47,10 @@ struct RigDrive {
 
 class GripperRig {
  public:
-  /// @param rest  ply frame places of all nodes [m];  @param mass, inertia  of nodes and directors, scaled [kg], [kg m^2]
-  /// @param place  x-y of each joint in the flat start [m];  @param turn  of the ply frame from the world's x-y [rad]
+  /// @param rest  ply frame places of all nodes [m];  @param mass, inertia  of nodes and directors, scaled
+  /// [kg], [kg m^2]
+  /// @param place  x-y of each joint in the flat start [m];  @param turn  of the ply frame from the world's
+  /// x-y [rad]
   /// @throws std::invalid_argument if a pad has no node under it, or two pads share one.
   GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>& rest, const std::vector<double>& mass,
              const std::vector<double>& inertia, std::vector<Eigen::Vector2d> place, double turn);
@@ -58,9 +63,10 @@ class GripperRig {
 
   [[nodiscard]] RigScratch scratch() const;
 
-  /// One step for the pads: from nodal forces to pad velocities at t + dt/2 that meet all constraints at t + dt.
-  /// Books the work of damping (rate alpha), actuators, interlinks and stops into state.work.
-  void kick(State& state, const RigDrive& drive, double dt, double alpha, RigScratch& scratch, RigRecord& record) const;
+  /// One step for the pads: from nodal forces to pad velocities at t + dt/2 that meet all constraints at t +
+  /// dt. Books the work of damping (rate alpha), actuators, interlinks and stops into state.work.
+  void kick(State& state, const RigDrive& drive, double dt, double alpha, RigScratch& scratch,
+            RigRecord& record) const;
 
   /// Moves pads to t + dt and their nodes with them.
   void drift(State& state, double dt) const;
@@ -78,12 +84,14 @@ class GripperRig {
     double mass = 0, inertia = 0;  ///< with the tied nodes [kg], [kg m^2]
     int first = 0, last = 0;       ///< range in tied_
   };
-  /// A row of the constraint system: the joints i and j keep their distance, or joint i its coordinate `axis`.
+  /// A row of the constraint system: the joints i and j keep their distance, or joint i its coordinate
+  /// `axis`.
   struct Row {
     int i = 0, j = -1, axis = -1;
     double value = 0;  ///< length or coordinate [m]
   };
-  /// Rows k and l <= k of the constraint system share a pad; `sign` is +1 if it stands on the same side in both.
+  /// Rows k and l <= k of the constraint system share a pad; `sign` is +1 if it stands on the same side in
+  /// both.
   struct Coupling {
     int k = 0, l = 0, pad = 0;
     double sign = 1;

@@ -12,10 +12,16 @@ using Lanes = std::experimental::native_simd<double>;
 inline constexpr int kLanes = int(Lanes::size());
 
 /// Arrays that lanes run over are padded to whole lanes plus one more, so that block loads never leave them.
-inline size_t padded(int count) { return size_t((count + kLanes - 1) / kLanes + 1) * size_t(kLanes); }
+inline size_t padded(int count) {
+  return size_t((count + kLanes - 1) / kLanes + 1) * size_t(kLanes);
+}
 
-inline Lanes load(const double* at) { return Lanes(at, std::experimental::element_aligned); }
-inline void store(const Lanes& value, double* at) { value.copy_to(at, std::experimental::element_aligned); }
+inline Lanes load(const double* at) {
+  return Lanes(at, std::experimental::element_aligned);
+}
+inline void store(const Lanes& value, double* at) {
+  value.copy_to(at, std::experimental::element_aligned);
+}
 
 /// A three-vector of lanes, or of plain doubles.
 template <class V>

@@ -8,13 +8,14 @@
 
 namespace drapeplan {
 
-/// Piecewise linear function on equal intervals; beyond them the last piece goes on. Zero is a grid point and maps to
-/// zero exactly, so a kink there (tension against compression) is kept.
+/// Piecewise linear function on equal intervals; beyond them the last piece goes on. Zero is a grid point and
+/// maps to zero exactly, so a kink there (tension against compression) is kept.
 class Lookup {
  public:
   Lookup() = default;
 
-  /// Samples f on `intervals` pieces of [lower, upper]; the grid is shifted by less than one piece so that zero is on it.
+  /// Samples f on `intervals` pieces of [lower, upper]; the grid is shifted by less than one piece so that
+  /// zero is on it.
   Lookup(const std::function<double(double)>& f, double lower, double upper, int intervals);
 
   [[nodiscard]] double operator()(double at) const {

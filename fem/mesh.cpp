@@ -24,17 +24,21 @@ std::vector<double> mesh_lines(double length, double mesh_size, const std::vecto
   if (places.empty()) return lines;
   if (lines.size() > 3 && lines[1] - lines[0] < 0.5 * (lines[2] - lines[1])) lines.erase(lines.begin() + 1);
   const size_t last = lines.size() - 1;
-  if (last > 2 && lines[last] - lines[last - 1] < 0.5 * (lines[last - 1] - lines[last - 2])) lines.erase(lines.end() - 2);
+  if (last > 2 && lines[last] - lines[last - 1] < 0.5 * (lines[last - 1] - lines[last - 2]))
+    lines.erase(lines.end() - 2);
   return lines;
 }
 
 }  // namespace
 
-Mesh rectangle_mesh(double width, double height, double mesh_size) { return rectangle_mesh(width, height, mesh_size, {}, {}); }
+Mesh rectangle_mesh(double width, double height, double mesh_size) {
+  return rectangle_mesh(width, height, mesh_size, {}, {});
+}
 
 Mesh rectangle_mesh(double width, double height, double mesh_size, const std::vector<double>& u,
                     const std::vector<double>& v) {
-  if (!(width > 0 && height > 0 && mesh_size > 0)) throw std::invalid_argument("rectangle_mesh: lengths must be positive");
+  if (!(width > 0 && height > 0 && mesh_size > 0))
+    throw std::invalid_argument("rectangle_mesh: lengths must be positive");
   const std::vector<double> x = mesh_lines(width, mesh_size, u), y = mesh_lines(height, mesh_size, v);
   const int nx = int(x.size()) - 1, ny = int(y.size()) - 1;
   const auto node = [nx](int i, int j) { return i + j * (nx + 1); };
@@ -43,7 +47,8 @@ Mesh rectangle_mesh(double width, double height, double mesh_size, const std::ve
     for (const double xi : x) mesh.rest.emplace_back(xi, yj);
   }
   for (int j = 0; j < ny; ++j) {
-    for (int i = 0; i < nx; ++i) mesh.quads.push_back({node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)});
+    for (int i = 0; i < nx; ++i)
+      mesh.quads.push_back({node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)});
   }
   for (int i = 0; i < nx; ++i) mesh.outline.push_back(node(i, 0));
   for (int j = 0; j < ny; ++j) mesh.outline.push_back(node(nx, j));

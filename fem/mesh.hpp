@@ -11,20 +11,20 @@ namespace drapeplan {
 struct Mesh {
   std::vector<Eigen::Vector2d> rest;      ///< node positions (u, v) [m]
   std::vector<std::array<int, 4>> quads;  ///< corner nodes, counter-clockwise
-  std::vector<int> outline;               ///< nodes of the ply's edge, counter-clockwise, not repeated at the end
+  std::vector<int> outline;  ///< nodes of the ply's edge, counter-clockwise, not repeated at the end
 
   [[nodiscard]] int node_count() const { return int(rest.size()); }
   [[nodiscard]] int element_count() const { return int(quads.size()); }
 };
 
-/// Mesh of a width-by-height rectangle centred at the origin, aligned with the fibres, edges at most `mesh_size`.
-/// The outline starts at corner (-,-).
+/// Mesh of a width-by-height rectangle centred at the origin, aligned with the fibres, edges at most
+/// `mesh_size`. The outline starts at corner (-,-).
 /// @throws std::invalid_argument if a length is not positive.
 Mesh rectangle_mesh(double width, double height, double mesh_size);
 
-/// The same with mesh lines through given places (pads must cover the same piece of ply on every mesh): equal cells
-/// between them, at most `mesh_size`. A margin outside them narrower than half a cell joins the cell beside it, so that
-/// no sliver sets the step; such a cell is then up to half a cell wider.
+/// The same with mesh lines through given places (pads must cover the same piece of ply on every mesh): equal
+/// cells between them, at most `mesh_size`. A margin outside them narrower than half a cell joins the cell
+/// beside it, so that no sliver sets the step; such a cell is then up to half a cell wider.
 /// @param u, v  increasing places inside the ply [m]; empty: equal cells over the whole length.
 Mesh rectangle_mesh(double width, double height, double mesh_size, const std::vector<double>& u,
                     const std::vector<double>& v);

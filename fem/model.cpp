@@ -10,8 +10,9 @@
 namespace drapeplan {
 namespace {
 
-/// Squared radius of gyration of directors, per unit of nodal mass [m^2]: that of the section, enlarged like A/9 as in
-/// established explicit codes, and further where the director's own rows would otherwise govern the step.
+/// Squared radius of gyration of directors, per unit of nodal mass [m^2]: that of the section, enlarged like
+/// A/9 as in established explicit codes, and further where the director's own rows would otherwise govern the
+/// step.
 double gyration_squared(double thickness, double area, double translation, double rotation) {
   constexpr double kElementShare = 1.0 / 9;
   return std::max(thickness * thickness / 12 + kElementShare * area, rotation / translation);
@@ -34,13 +35,15 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   auto shell = make_shell(mesh, scene_.fabric, options);
   shell_ = shell.get();
   terms_.push_back(std::move(shell));
-  NodalStiffness stiffness{std::vector<double>(n, 0.0), std::vector<double>(n, 0.0), std::vector<double>(n, 0.0)};
+  NodalStiffness stiffness{std::vector<double>(n, 0.0), std::vector<double>(n, 0.0),
+                           std::vector<double>(n, 0.0)};
   terms_.front()->add_stiffness(stiffness);
   if (scene_.gravity) terms_.push_back(make_gravity(unscaled, *scene_.gravity));
   if (scene_.mold) {
     std::vector<double> contact(stiffness.translation);
     for (double& k : contact) k *= options.contact_stiffness;
-    terms_.push_back(make_contact(*scene_.mold, scene_.friction, std::move(contact), scene_.fabric.thickness / 2));
+    terms_.push_back(
+        make_contact(*scene_.mold, scene_.friction, std::move(contact), scene_.fabric.thickness / 2));
     terms_.back()->add_stiffness(stiffness);
   }
 
@@ -52,7 +55,8 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
         gyration_squared(scene_.fabric.thickness, area[k], stiffness.translation[k], stiffness.rotation[k]);
     mass_[k] = options.mass_scaling * unscaled[k];
     inertia_[k] = gyration2 * mass_[k];
-    largest = std::max(largest, (stiffness.translation[k] + stiffness.coupling[k] / std::sqrt(gyration2)) / mass_[k]);
+    largest = std::max(largest,
+                       (stiffness.translation[k] + stiffness.coupling[k] / std::sqrt(gyration2)) / mass_[k]);
   }
   stable_dt_ = 2 / std::sqrt(largest);
   alpha_ = scene_.damping.value_or(0) / std::sqrt(options.mass_scaling);
@@ -62,15 +66,17 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   if (scene_.rig) {
     const Eigen::Rotation2Dd turn(scene_.angle);
     std::vector<Eigen::Vector2d> place;
-    for (int g = 0; g < scene_.rig->count(); ++g) place.emplace_back(scene_.position + turn * scene_.rig->place(g));
+    for (int g = 0; g < scene_.rig->count(); ++g)
+      place.emplace_back(scene_.position + turn * scene_.rig->place(g));
     rig_.emplace(*scene_.rig, mesh.rest, mass_, inertia_, place, scene_.angle);
     for (const int node : rig_->tied()) {
       if (mass_[size_t(node)] == 0) throw std::invalid_argument("a node under a pad is clamped");
     }
     held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
     if (std::sqrt(scene_.rig->actuator_stiffness / scene_.rig->pad_mass) * dt() > kServoStep) {
-      throw std::invalid_argument("the actuators are too stiff for the time step: lower grippers.actuator_stiffness or "
-                                  "raise grippers.pad_mass");
+      throw std::invalid_argument(
+          "the actuators are too stiff for the time step: lower grippers.actuator_stiffness or "
+          "raise grippers.pad_mass");
     }
   }
   for (const int node : held) mass_[size_t(node)] = inertia_[size_t(node)] = 0;

@@ -21,15 +21,15 @@ struct Scene {
   Mesh mesh;
   Fabric fabric;
   FemOptions options;
-  Eigen::Vector2d position{0, 0};    ///< x-y of the ply frame's origin in the flat start [m]
-  double angle = 0;                  ///< warp direction from +x in the flat start [rad]
-  double start_height = 0;           ///< of the flat ply without a rig; with a rig the schedule says it [m]
-  std::optional<double> gravity;     ///< [m/s^2]
-  std::optional<double> damping;     ///< mass-proportional rate alpha of the unscaled ply [1/s]
+  Eigen::Vector2d position{0, 0};  ///< x-y of the ply frame's origin in the flat start [m]
+  double angle = 0;                ///< warp direction from +x in the flat start [rad]
+  double start_height = 0;         ///< of the flat ply without a rig; with a rig the schedule says it [m]
+  std::optional<double> gravity;   ///< [m/s^2]
+  std::optional<double> damping;   ///< mass-proportional rate alpha of the unscaled ply [1/s]
   std::optional<Mold> mold;
-  std::optional<double> friction;    ///< needs a mold
+  std::optional<double> friction;  ///< needs a mold
   std::optional<RigOptions> rig;
-  std::vector<int> clamped;          ///< nodes that never move or turn
+  std::vector<int> clamped;  ///< nodes that never move or turn
 };
 
 /// The discrete system: masses, terms, stable step.
@@ -48,8 +48,8 @@ class Model {
   /// Step that is played: step_safety times the estimated stable one [s].
   [[nodiscard]] double dt() const { return scene_.options.step_safety * stable_dt_; }
   [[nodiscard]] double stable_dt() const { return stable_dt_; }
-  /// Damping rate on the scaled mass [1/s]: with a mass s times larger, modes are sqrt(s) times slower, and so is what
-  /// damps them critically.
+  /// Damping rate on the scaled mass [1/s]: with a mass s times larger, modes are sqrt(s) times slower, and
+  /// so is what damps them critically.
   [[nodiscard]] double alpha() const { return alpha_; }
 
   /// Scaled masses [kg] and director inertias [kg m^2] of free nodes; 0 for clamped and tied ones; padded.

@@ -31,7 +31,8 @@ bool Monitor::look(const State& state, RunResult& result) {
   const double balance =
       now.kinetic + now.internal + now.friction + now.contact + now.damping + now.constraint - now.external;
   double largest = report.energy.largest;
-  for (const double part : {now.kinetic, now.internal, now.external, now.friction, now.contact, now.damping, now.constraint}) {
+  for (const double part :
+       {now.kinetic, now.internal, now.external, now.friction, now.contact, now.damping, now.constraint}) {
     largest = std::max(largest, std::abs(part));
   }
   if (!std::isfinite(balance)) return fail(state, "energy is not finite", result);
@@ -49,9 +50,11 @@ bool Monitor::look(const State& state, RunResult& result) {
   Snapshot strains;
   model_.shell().strains(state, strains);
   for (const auto* list : {&strains.warp_strain, &strains.weft_strain}) {
-    for (const double strain : *list) result.largest_fibre_strain = std::max(result.largest_fibre_strain, std::abs(strain));
+    for (const double strain : *list)
+      result.largest_fibre_strain = std::max(result.largest_fibre_strain, std::abs(strain));
   }
-  if (!(result.largest_fibre_strain <= kTornStrain)) return fail(state, "a fibre is torn or the step is unstable", result);
+  if (!(result.largest_fibre_strain <= kTornStrain))
+    return fail(state, "a fibre is torn or the step is unstable", result);
   return true;
 }
 

@@ -4,13 +4,14 @@
 namespace drapeplan {
 
 struct FemOptions {
-  double mesh_size = 0.010;      ///< largest element edge [m]
-  int section_points = 3;        ///< through the thickness: 1, 3 or 5
-  double mass_scaling = 20;      ///< factor on the mass; gravity acts on the unscaled mass (seed: up to 20)
-  double time_scaling = 1;       ///< the schedule is played this many times faster than written
-  double step_safety = 0.9;      ///< share of the estimated stable step
-  double hourglass = 1;          ///< hourglass stiffness over the physical one of a fibre in compression
-  double contact_stiffness = 0.1;  ///< normal and tangential contact stiffness over the node's membrane stiffness
+  double mesh_size = 0.010;  ///< largest element edge [m]
+  int section_points = 3;    ///< through the thickness: 1, 3 or 5
+  double mass_scaling = 20;  ///< factor on the mass; gravity acts on the unscaled mass (seed: up to 20)
+  double time_scaling = 1;   ///< the schedule is played this many times faster than written
+  double step_safety = 0.9;  ///< share of the estimated stable step
+  double hourglass = 1;      ///< hourglass stiffness over the physical one of a fibre in compression
+  double contact_stiffness =
+      0.1;  ///< normal and tangential contact stiffness over the node's membrane stiffness
 };
 
 }  // namespace drapeplan

@@ -10,13 +10,13 @@ namespace drapeplan {
 /// kinetic = external - internal - friction - contact - damping - constraint closes to round-off.
 struct Energies {
   double kinetic = 0;
-  double internal = 0;    ///< work done on the fabric, its hourglass part included
-  double external = 0;    ///< work of gravity and of the actuators
-  double friction = 0;    ///< taken by friction, its elastic part included
-  double contact = 0;     ///< stored by normal contact
-  double damping = 0;     ///< taken by mass damping
-  double constraint = 0;  ///< taken by interlinks, guides and tilt stops
-  double hourglass = 0;   ///< stored in hourglass modes; part of `internal`
+  double internal = 0;       ///< work done on the fabric, its hourglass part included
+  double external = 0;       ///< work of gravity and of the actuators
+  double friction = 0;       ///< taken by friction, its elastic part included
+  double contact = 0;        ///< stored by normal contact
+  double damping = 0;        ///< taken by mass damping
+  double constraint = 0;     ///< taken by interlinks, guides and tilt stops
+  double hourglass = 0;      ///< stored in hourglass modes; part of `internal`
   double largest = 0;        ///< largest magnitude that any entry reached
   double balance_error = 0;  ///< largest |balance| over the run / largest
 };
@@ -32,9 +32,11 @@ struct RunReport {
   double wall_seconds = 0;
   double element_updates_per_second = 0;
   Energies energy;
-  double largest_kinetic_ratio = 0;  ///< kinetic energy of the ply's free nodes over internal energy at the end of each tenth, from the second on
+  double largest_kinetic_ratio = 0;  ///< kinetic energy of the ply's free nodes over internal energy at the
+                                     ///< end of each tenth, from the second on
   double largest_penetration = 0;    ///< of the ply's underside below the mold, at the end [m]
-  double largest_link_error = 0;     ///< error of an interlink's length or of the fixed joint's place over the run [m]
+  double largest_link_error =
+      0;  ///< error of an interlink's length or of the fixed joint's place over the run [m]
   std::uint64_t state_hash = 0;
 };
 

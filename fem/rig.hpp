@@ -12,24 +12,25 @@ namespace drapeplan {
 /// Rectangular grid of grippers, centred on the ply. Gripper (i, j) of files counts from 1, i along the warp;
 /// its index is (j - 1) * columns + (i - 1).
 struct RigOptions {
-  int columns = 0;                ///< along the warp
-  int rows = 0;                   ///< along the weft
-  double spacing = 0;             ///< [m]
-  double pad_radius = 0.020;      ///< discs tied to the ply [m]
-  double pad_mass = 0.1;          ///< moving mass of one gripper [kg]
-  double joint_offset = 0.005;    ///< joint above the ply along the pad's normal [m]
+  int columns = 0;                                  ///< along the warp
+  int rows = 0;                                     ///< along the weft
+  double spacing = 0;                               ///< [m]
+  double pad_radius = 0.020;                        ///< discs tied to the ply [m]
+  double pad_mass = 0.1;                            ///< moving mass of one gripper [kg]
+  double joint_offset = 0.005;                      ///< joint above the ply along the pad's normal [m]
   double tilt_limit = 60 * std::numbers::pi / 180;  ///< largest angle between pad normal and vertical [rad]
-  bool interlinks = true;         ///< rigid bars between neighbouring joints
-  std::optional<std::array<int, 2>> fixed;  ///< gripper (i, j) whose joint is fixed in-plane
-  double actuator_stiffness = 1e4;          ///< [N/m]
-  double actuator_force_limit = 50;         ///< [N]
-  double max_velocity = 0.2;                ///< of a joint, vertical [m/s]
-  double blend_time = 0.1;                  ///< over which a change of velocity is spread [s]
+  bool interlinks = true;                           ///< rigid bars between neighbouring joints
+  std::optional<std::array<int, 2>> fixed;          ///< gripper (i, j) whose joint is fixed in-plane
+  double actuator_stiffness = 1e4;                  ///< [N/m]
+  double actuator_force_limit = 50;                 ///< [N]
+  double max_velocity = 0.2;                        ///< of a joint, vertical [m/s]
+  double blend_time = 0.1;                          ///< over which a change of velocity is spread [s]
 
   [[nodiscard]] int count() const { return columns * rows; }
   /// Place of gripper `index` in the ply frame (u, v) [m].
   [[nodiscard]] Eigen::Vector2d place(int index) const {
-    return {(index % columns - 0.5 * (columns - 1)) * spacing, (index / columns - 0.5 * (rows - 1)) * spacing};
+    return {(index % columns - 0.5 * (columns - 1)) * spacing,
+            (index / columns - 0.5 * (rows - 1)) * spacing};
   }
 };
 
@@ -37,7 +38,8 @@ struct RigOptions {
 std::vector<double> column_places(const RigOptions& rig);
 std::vector<double> row_places(const RigOptions& rig);
 
-/// Pairs of neighbouring grippers (indices), each joined by an interlink; warp direction first, in fixed order.
+/// Pairs of neighbouring grippers (indices), each joined by an interlink; warp direction first, in fixed
+/// order.
 std::vector<std::array<int, 2>> interlinks(const RigOptions& rig);
 
 }  // namespace drapeplan

@@ -18,8 +18,8 @@ struct Command {
 };
 
 /// A draping sequence: pure value, one path per gripper, in the order of the grid (x fastest).
-/// The commanded height is the moving average of the path over the last `blend_time`, so that velocities change
-/// at a finite acceleration; a path starts and ends at rest.
+/// The commanded height is the moving average of the path over the last `blend_time`, so that velocities
+/// change at a finite acceleration; a path starts and ends at rest.
 struct Schedule {
   std::vector<std::vector<Knot>> paths;  ///< times increasing from 0; at least one knot each
   double blend_time = 0;                 ///< [s]

@@ -7,10 +7,10 @@
 namespace drapeplan {
 namespace {
 
-constexpr double kShearCorrection = 5.0 / 6;      // Reissner's factor for a homogeneous section; seed, Eq. (14)
-constexpr double kTabulatedStrain = 0.02;         // at least; beyond the table the last piece goes on
-constexpr double kFibreStep = 4e-5;               // strain per piece: the power law of tension is met to 1e-5 of its end
-constexpr double kTabulatedSine = 0.98;           // 78.5 degrees; tau / cos g goes on linearly from there
+constexpr double kShearCorrection = 5.0 / 6;  // Reissner's factor for a homogeneous section; seed, Eq. (14)
+constexpr double kTabulatedStrain = 0.02;     // at least; beyond the table the last piece goes on
+constexpr double kFibreStep = 4e-5;  // strain per piece: the power law of tension is met to 1e-5 of its end
+constexpr double kTabulatedSine = 0.98;  // 78.5 degrees; tau / cos g goes on linearly from there
 constexpr int kShearIntervals = 490;
 
 /// A run of kLanes elements; the last one is filled up with copies of its last element that have no area.
@@ -198,8 +198,9 @@ size_t ShellTerm<N>::add_block(size_t first) {
   return left;
 }
 
-/// Sums of absolute rows of the rest stiffness. Both fibre families may act fully on the same node, but never in the
-/// same pattern: along one wave, sin^2 a cos^2 b + cos^2 a sin^2 b <= 1, whatever the shear angle. So the larger counts.
+/// Sums of absolute rows of the rest stiffness. Both fibre families may act fully on the same node, but never
+/// in the same pattern: along one wave, sin^2 a cos^2 b + cos^2 a sin^2 b <= 1, whatever the shear angle. So
+/// the larger counts.
 template <int N>
 void ShellTerm<N>::add_stiffness(NodalStiffness& stiffness) const {
   const double t = material_.thickness;
@@ -210,14 +211,17 @@ void ShellTerm<N>::add_stiffness(NodalStiffness& stiffness) const {
     const std::array<double, 4> b1{std::abs(g.b10), std::abs(g.b11), std::abs(g.b10), std::abs(g.b11)};
     const std::array<double, 4> b2{std::abs(g.b20), std::abs(g.b21), std::abs(g.b20), std::abs(g.b21)};
     const double sum1 = 2 * (b1[0] + b1[1]), sum2 = 2 * (b2[0] + b2[1]);
-    const double warp = 0.25 / std::min(g.half1, g.half2);  // transverse shear per unit of hourglass displacement
+    const double warp =
+        0.25 / std::min(g.half1, g.half2);  // transverse shear per unit of hourglass displacement
     for (size_t c = 0; c < 4; ++c) {
       const auto node = size_t(mesh_.quads[e][c]);
       const double row1 = b1[c] * sum1, row2 = b2[c] * sum2, both = (b1[c] + b2[c]) * (sum1 + sum2);
       const double fibres = g.area * t * fibre * std::max(row1, row2);
-      stiffness.translation[node] += fibres + g.area * (t * shear_slope_ * both + material_.transverse * (row1 + row2)) +
-                                     4 * (h.membrane + g.area * material_.transverse / 3 * 2 * warp * warp);
-      stiffness.rotation[node] += fibres * t * t / 12 + g.area * material_.transverse * (0.5 + 2.0 / 3) + 4 * h.director;
+      stiffness.translation[node] +=
+          fibres + g.area * (t * shear_slope_ * both + material_.transverse * (row1 + row2)) +
+          4 * (h.membrane + g.area * material_.transverse / 3 * 2 * warp * warp);
+      stiffness.rotation[node] +=
+          fibres * t * t / 12 + g.area * material_.transverse * (0.5 + 2.0 / 3) + 4 * h.director;
       stiffness.coupling[node] += fibres * t / 4 + g.area * material_.transverse * (b1[c] + b2[c] + warp);
     }
   }
@@ -227,10 +231,14 @@ void ShellTerm<N>::add_stiffness(NodalStiffness& stiffness) const {
 
 std::unique_ptr<Shell> make_shell(const Mesh& mesh, const Fabric& fabric, const FemOptions& options) {
   switch (options.section_points) {
-    case 1: return std::make_unique<ShellTerm<1>>(mesh, fabric, options);
-    case 3: return std::make_unique<ShellTerm<3>>(mesh, fabric, options);
-    case 5: return std::make_unique<ShellTerm<5>>(mesh, fabric, options);
-    default: throw std::invalid_argument("shell: section_points must be 1, 3 or 5");
+    case 1:
+      return std::make_unique<ShellTerm<1>>(mesh, fabric, options);
+    case 3:
+      return std::make_unique<ShellTerm<3>>(mesh, fabric, options);
+    case 5:
+      return std::make_unique<ShellTerm<5>>(mesh, fabric, options);
+    default:
+      throw std::invalid_argument("shell: section_points must be 1, 3 or 5");
   }
 }
 

@@ -1,18 +1,20 @@
 // One-point director shell with fabric law: forces of one lane-block of elements.
 //
-// Source: seed, "Transient Nonlinear FE Model" (reduced integration, first-order shear deformation, nominal stress over
-// nominal strain along the fibres, decoupled modes, bending through section points).
-// Differs: total-Lagrangian with unit directors d instead of rotations, so rigid motion is exact.
+// Source: seed, "Transient Nonlinear FE Model" (reduced integration, first-order shear deformation, nominal
+// stress over nominal strain along the fibres, decoupled modes, bending through section points). Differs:
+// total-Lagrangian with unit directors d instead of rotations, so rigid motion is exact.
 //
 // At the element's middle, with X the flat rest place and h = (1, -1, 1, -1) over the corners:
 //   a_k = x,k    c_k = d,k    dm = mean d    fibre vectors at height s of the section: f_k = a_k + s c_k
 //   nominal strain e_k = |f_k| - 1,  shear angle: sin g = f_1.f_2 / (|f_1||f_2|),  transverse shear a_k . dm
-// Energy per rest area = sum over section points of w t [ U(e_1) + U(e_2) + V(g) ] + K G t (s_1^2 + s_2^2) / 2.
-// With S = tau / cos g (tabulated over sin g) the force conjugate to f_1 is  T_1 n_1 + S (n_2 - sin g n_1) / |f_1|.
+// Energy per rest area = sum over section points of w t [ U(e_1) + U(e_2) + V(g) ] + K G t (s_1^2 + s_2^2)
+// / 2. With S = tau / cos g (tabulated over sin g) the force conjugate to f_1 is  T_1 n_1 + S (n_2 - sin g
+// n_1) / |f_1|.
 //
-// Hourglass: hx = h.x - (h.X) a_1 - (h.Y) a_2 vanishes for every linear field; likewise hd. Their stiffness is the
-// physical one of the bilinear element for a fibre in compression (in-plane part and directors), and the linear part of
-// the transverse shear strain that the middle misses, as in the MITC4 element (Dvorkin and Bathe 1984).
+// Hourglass: hx = h.x - (h.X) a_1 - (h.Y) a_2 vanishes for every linear field; likewise hd. Their stiffness
+// is the physical one of the bilinear element for a fibre in compression (in-plane part and directors), and
+// the linear part of the transverse shear strain that the middle misses, as in the MITC4 element (Dvorkin and
+// Bathe 1984).
 #pragma once
 
 #include <array>
@@ -25,10 +27,10 @@ namespace drapeplan {
 /// Rest geometry of one element, or of a block of them.
 template <class V>
 struct ElementGeometry {
-  V b10, b11, b20, b21;    ///< gradient of the middle: d/du = b10, b11, -b10, -b11; d/dv likewise [1/m]
-  V area;                  ///< [m^2]
-  V half1, half2;          ///< half the element's length along each fibre [m]
-  V skew1, skew2;          ///< h.X and h.Y: zero for a parallelogram [m]
+  V b10, b11, b20, b21;  ///< gradient of the middle: d/du = b10, b11, -b10, -b11; d/dv likewise [1/m]
+  V area;                ///< [m^2]
+  V half1, half2;        ///< half the element's length along each fibre [m]
+  V skew1, skew2;        ///< h.X and h.Y: zero for a parallelogram [m]
 };
 
 /// Corner values of one element, or of a block: positions or directors.
@@ -49,16 +51,16 @@ struct Section<3> {
 };
 template <>
 struct Section<5> {
-  static constexpr std::array<double, 5> place{-0.45308992296933199, -0.26923465505284155, 0.0, 0.26923465505284155,
-                                               0.45308992296933199};
+  static constexpr std::array<double, 5> place{-0.45308992296933199, -0.26923465505284155, 0.0,
+                                               0.26923465505284155, 0.45308992296933199};
   static constexpr std::array<double, 5> weight{0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
                                                 0.23931433524968324, 0.11846344252809454};
 };
 
 /// The fabric as the kernel needs it.
 struct KernelMaterial {
-  Lookup fibre;         ///< nominal stress over nominal strain, tension and compression [Pa]
-  Lookup shear;         ///< tau / cos g over sin g [Pa]
+  Lookup fibre;  ///< nominal stress over nominal strain, tension and compression [Pa]
+  Lookup shear;  ///< tau / cos g over sin g [Pa]
   double thickness = 0;
   double transverse = 0;         ///< K G t [N/m]
   double hourglass_modulus = 0;  ///< [Pa]
@@ -84,7 +86,8 @@ ElementMotion<V> element_motion(const ElementGeometry<V>& g, const Corners<V>& x
   return m;
 }
 
-/// In-plane and director hourglass stiffness [N/m], [N m] of an element: E t A / (12 h^2) with the mean of both fibres.
+/// In-plane and director hourglass stiffness [N/m], [N m] of an element: E t A / (12 h^2) with the mean of
+/// both fibres.
 template <class V>
 struct HourglassStiffness {
   V membrane, director;
@@ -98,8 +101,8 @@ HourglassStiffness<V> hourglass_stiffness(const ElementGeometry<V>& g, const Ker
 
 /// Forces that the element exerts on its corners: on positions [N] and on directors [N m].
 template <int N, class V>
-void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, const Corners<V>& x, const Corners<V>& d,
-                  Corners<V>& force, Corners<V>& moment) {
+void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, const Corners<V>& x,
+                  const Corners<V>& d, Corners<V>& force, Corners<V>& moment) {
   using std::sqrt;
   const ElementMotion<V> m = element_motion(g, x, d);
   const V zero(0.0), one(1.0);
@@ -111,7 +114,8 @@ void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, c
     const V length1 = sqrt(dot(f1, f1)), length2 = sqrt(dot(f2, f2));
     const V inverse1 = one / length1, inverse2 = one / length2;
     const V sine = dot(f1, f2) * inverse1 * inverse2;
-    const V t1 = material.fibre(V(length1 - one)), t2 = material.fibre(V(length2 - one)), shear = material.shear(sine);
+    const V t1 = material.fibre(V(length1 - one)), t2 = material.fibre(V(length2 - one)),
+            shear = material.shear(sine);
     const V both = w * shear * inverse1 * inverse2;
     const Vec3<V> p1 = (w * (t1 - shear * sine * inverse1) * inverse1) * f1 + both * f2;
     const Vec3<V> p2 = (w * (t2 - shear * sine * inverse2) * inverse2) * f2 + both * f1;
@@ -133,12 +137,14 @@ void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, c
   m1 = m1 + (l2 * g.half1) * m.a2;
   const V l = l1 * quarter1 + l2 * quarter2;
   const HourglassStiffness<V> h = hourglass_stiffness(g, material);
-  const Vec3<V> on_mean = g.area * ((q * s1) * m.a1 + (q * s2) * m.a2 + l * m.hx) - (h.membrane * warp) * m.hx;
+  const Vec3<V> on_mean =
+      g.area * ((q * s1) * m.a1 + (q * s2) * m.a2 + l * m.hx) - (h.membrane * warp) * m.hx;
   const Vec3<V> on_hx = (g.area * l - h.membrane * warp) * m.mean + h.membrane * m.hx;
   const Vec3<V> on_hd = h.director * m.hd;
 
   // From derivatives back to corners; a force is minus the energy's derivative.
-  const auto spread = [&g](const Vec3<V>& on1, const Vec3<V>& on2, const Vec3<V>& on_h, const Vec3<V>& on_all, Corners<V>& out) {
+  const auto spread = [&g](const Vec3<V>& on1, const Vec3<V>& on2, const Vec3<V>& on_h, const Vec3<V>& on_all,
+                           Corners<V>& out) {
     const Vec3<V> r1 = g.area * on1 - g.skew1 * on_h, r2 = g.area * on2 - g.skew2 * on_h;
     const Vec3<V> p = g.b10 * r1 + g.b20 * r2, r = g.b11 * r1 + g.b21 * r2;
     out[0] = V(-1.0) * (on_all + p + on_h);
@@ -156,12 +162,13 @@ struct ElementEnergy {
 };
 
 template <int N>
-ElementEnergy shell_energy(const ElementGeometry<double>& g, const KernelMaterial& material, const Corners<double>& x,
-                           const Corners<double>& d) {
+ElementEnergy shell_energy(const ElementGeometry<double>& g, const KernelMaterial& material,
+                           const Corners<double>& x, const Corners<double>& d) {
   const ElementMotion<double> m = element_motion(g, x, d);
   double density = 0;
   for (size_t k = 0; k < size_t(N); ++k) {
-    const double s = Section<N>::place[k] * material.thickness, w = Section<N>::weight[k] * material.thickness;
+    const double s = Section<N>::place[k] * material.thickness,
+                 w = Section<N>::weight[k] * material.thickness;
     const Vec3<double> f1 = m.a1 + s * m.c1, f2 = m.a2 + s * m.c2;
     const double length1 = std::sqrt(dot(f1, f1)), length2 = std::sqrt(dot(f2, f2));
     const double sine = dot(f1, f2) / (length1 * length2);

@@ -12,7 +12,8 @@ namespace drapeplan {
 namespace {
 
 constexpr double kMostSteps = 1e10;  // weeks of run time: a wrong unit or a degenerate mesh, not a plan
-constexpr int kLooks = 200;  // times per run at which the monitor looks: 0.5 % of the run is lost at most by divergence
+constexpr int kLooks =
+    200;  // times per run at which the monitor looks: 0.5 % of the run is lost at most by divergence
 
 /// Height of the flat ply at the start: all joints stand at the same height.
 double start_height(const Model& model, const RunRequest& request) {
@@ -38,10 +39,12 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   const double dt = model.dt();
   const RigDrive drive{request.schedule, model.scene().options.time_scaling};
   State state = model.flat_state(start_height(model, request));
-  const double duration = request.duration > 0 ? request.duration : (request.schedule ? request.schedule->duration() : 0);
+  const double duration =
+      request.duration > 0 ? request.duration : (request.schedule ? request.schedule->duration() : 0);
   if (!(duration > 0)) throw std::invalid_argument("simulate: neither a schedule nor a duration is given");
   const double count = std::ceil(duration / drive.time_scaling / dt);
-  if (!(count <= kMostSteps)) throw std::invalid_argument("simulate: the run would need more than 1e10 steps");
+  if (!(count <= kMostSteps))
+    throw std::invalid_argument("simulate: the run would need more than 1e10 steps");
   const auto steps = std::int64_t(count);
   const auto instant = [steps](std::int64_t k, std::int64_t of) { return k * steps / of; };
 

@@ -24,7 +24,8 @@ std::uint64_t hash_state(const State& state, int node_count) {
   Fnv1a hash;
   hash.add(double(state.step));
   hash.add(state.time);
-  for (const VectorField* field : {&state.x, &state.v, &state.d, &state.w, &state.anchor}) add(hash, *field, n);
+  for (const VectorField* field : {&state.x, &state.v, &state.d, &state.w, &state.anchor})
+    add(hash, *field, n);
   add(hash, state.stuck, n);
   for (const PadState& pad : state.pads) {
     for (int k = 0; k < 3; ++k) hash.add(pad.centre[k]);

@@ -23,8 +23,8 @@ struct NodalStiffness {
   std::vector<double> coupling;     ///< between both [N]
 };
 
-/// A term is const after the model is built; candidates and threads share it. What changes lives in State, what may be
-/// thrown away at any step lives in the term's entries of the workspace.
+/// A term is const after the model is built; candidates and threads share it. What changes lives in State,
+/// what may be thrown away at any step lives in the term's entries of the workspace.
 class Term {
  public:
   virtual ~Term() = default;

@@ -6,7 +6,9 @@ namespace {
 
 namespace stdx = std::experimental;
 
-Eigen::Vector3d at(const VectorField& field, size_t n) { return {field.x[n], field.y[n], field.z[n]}; }
+Eigen::Vector3d at(const VectorField& field, size_t n) {
+  return {field.x[n], field.y[n], field.z[n]};
+}
 
 void set(VectorField& field, size_t n, const Eigen::Vector3d& value) {
   field.x[n] = value.x();
@@ -25,12 +27,14 @@ Workspace::Workspace(const Model& model) : mean_v(model.node_count()), mean_w(mo
 }
 
 void compute_forces(const Model& model, State& state, Workspace& work) {
-  for (size_t k = 0; k < work.first.size(); ++k) model.terms()[k]->forces(state, &work.entries[work.first[k]]);
+  for (size_t k = 0; k < work.first.size(); ++k)
+    model.terms()[k]->forces(state, &work.entries[work.first[k]]);
 }
 
 void kick_nodes(const Model& model, State& state, Workspace& work) {
   const double dt = model.dt(), alpha = model.alpha();
-  const Lanes keep((1 - 0.5 * alpha * dt) / (1 + 0.5 * alpha * dt)), gain(dt / (1 + 0.5 * alpha * dt)), half(0.5);
+  const Lanes keep((1 - 0.5 * alpha * dt) / (1 + 0.5 * alpha * dt)), gain(dt / (1 + 0.5 * alpha * dt)),
+      half(0.5);
   for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
     Vec3<Lanes> force = work.entries[0].force.lanes(n), moment = work.entries[0].moment.lanes(n);
     for (size_t k = 1; k < work.entries.size(); ++k) {
@@ -75,7 +79,8 @@ void book_work(const Model& model, State& state, const Workspace& work) {
       power += dot(entry.force.lanes(n), work.mean_v.lanes(n));
     }
     if (!entry.moment.x.empty()) {
-      for (size_t n = 0; n < nodes; n += size_t(kLanes)) power += dot(entry.moment.lanes(n), work.mean_w.lanes(n));
+      for (size_t n = 0; n < nodes; n += size_t(kLanes))
+        power += dot(entry.moment.lanes(n), work.mean_w.lanes(n));
     }
     state.work[size_t(entry.book)] += dt * stdx::reduce(power);
   }
@@ -93,15 +98,19 @@ void drift_nodes(const Model& model, State& state) {
   const Lanes dt(model.dt()), one(1.0);
   for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
     state.x.set_lanes(n, state.x.lanes(n) + dt * state.v.lanes(n));
-    // The director turns along a great circle by the angle |w| dt, and its rate with it: |d| and |w| keep their values.
-    // Series of sine and cosine: angles of a step are far below 1, the first term left out is below 1e-16 up to 0.03.
+    // The director turns along a great circle by the angle |w| dt, and its rate with it: |d| and |w| keep
+    // their values. Series of sine and cosine: angles of a step are far below 1, the first term left out is
+    // below 1e-16 up to 0.03.
     const Vec3<Lanes> d = state.d.lanes(n), w = state.w.lanes(n);
     const Lanes w2 = dot(w, w), a2 = w2 * dt * dt;
-    const Lanes sine = one - a2 * Lanes(1.0 / 6) * (one - a2 * Lanes(1.0 / 20) * (one - a2 * Lanes(1.0 / 42)));
+    const Lanes sine =
+        one - a2 * Lanes(1.0 / 6) * (one - a2 * Lanes(1.0 / 20) * (one - a2 * Lanes(1.0 / 42)));
     const Lanes cosine =
-        one - a2 * Lanes(0.5) * (one - a2 * Lanes(1.0 / 12) * (one - a2 * Lanes(1.0 / 30) * (one - a2 * Lanes(1.0 / 56))));
+        one - a2 * Lanes(0.5) *
+                  (one - a2 * Lanes(1.0 / 12) * (one - a2 * Lanes(1.0 / 30) * (one - a2 * Lanes(1.0 / 56))));
     const Vec3<Lanes> turned = cosine * d + (sine * dt) * w;
-    const Lanes unit = Lanes(1.5) - Lanes(0.5) * dot(turned, turned);  // Newton step towards length 1: only round-off
+    const Lanes unit =
+        Lanes(1.5) - Lanes(0.5) * dot(turned, turned);  // Newton step towards length 1: only round-off
     state.d.set_lanes(n, unit * turned);
     state.w.set_lanes(n, cosine * w - (sine * dt * w2) * d);
   }

@@ -10,9 +10,9 @@ namespace drapeplan {
 struct Workspace {
   explicit Workspace(const Model& model);
 
-  std::vector<Forces> entries;   ///< of all terms, in order
-  std::vector<size_t> first;     ///< entry of each term
-  VectorField mean_v, mean_w;    ///< means of the half-step velocities
+  std::vector<Forces> entries;  ///< of all terms, in order
+  std::vector<size_t> first;    ///< entry of each term
+  VectorField mean_v, mean_w;   ///< means of the half-step velocities
   RigScratch rig;
 };
 

@@ -14,8 +14,9 @@ struct Geodesic {
   Eigen::Vector3d end_direction;        ///< unit tangent at the last point
 };
 
-/// Shoots a geodesic from (x, y) of `start` in the direction whose projection on the x-y plane is `direction`.
-/// Integrates the geodesic equation of the height field with the classical fourth-order Runge-Kutta method.
+/// Shoots a geodesic from (x, y) of `start` in the direction whose projection on the x-y plane is
+/// `direction`. Integrates the geodesic equation of the height field with the classical fourth-order
+/// Runge-Kutta method.
 /// @param step   distance between points [m], > 0;  @param count  number of steps, >= 0.
 /// @throws std::domain_error where the mold is not defined along the way.
 Geodesic shoot_geodesic(const Mold& mold, const Eigen::Vector2d& start, const Eigen::Vector2d& direction,
@@ -23,6 +24,7 @@ Geodesic shoot_geodesic(const Mold& mold, const Eigen::Vector2d& start, const Ei
 
 /// Direction (unit, in the x-y plane) of the geodesic from `start` that passes through `goal`.
 /// @throws std::domain_error if the shooting iteration does not converge.
-Eigen::Vector2d geodesic_direction(const Mold& mold, const Eigen::Vector2d& start, const Eigen::Vector2d& goal);
+Eigen::Vector2d geodesic_direction(const Mold& mold, const Eigen::Vector2d& start,
+                                   const Eigen::Vector2d& goal);
 
 }  // namespace drapeplan

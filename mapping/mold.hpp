@@ -9,10 +9,10 @@ namespace drapeplan {
 
 /// Height and its partial derivatives up to third order at one point (x, y). Metre based SI units.
 struct Jet {
-  double z = 0;                                     ///< [m]
-  double zx = 0, zy = 0;                            ///< [-]
-  double zxx = 0, zxy = 0, zyy = 0;                 ///< [1/m]
-  double zxxx = 0, zxxy = 0, zxyy = 0, zyyy = 0;    ///< [1/m^2]
+  double z = 0;                                   ///< [m]
+  double zx = 0, zy = 0;                          ///< [-]
+  double zxx = 0, zxy = 0, zyy = 0;               ///< [1/m]
+  double zxxx = 0, zxxy = 0, zxyy = 0, zyyy = 0;  ///< [1/m^2]
 };
 
 /// z = sum of coefficient * x^i * y^j; a coefficient has the unit m^(1-i-j). Seed, Eq. (1).
@@ -49,10 +49,10 @@ struct Extent {
 
 /// Foot of the perpendicular from a point onto the mold.
 struct ClosestPoint {
-  Eigen::Vector3d foot;          ///< on the mold [m]
-  Eigen::Vector3d normal;        ///< unit, upwards (normal.z() > 0)
-  double signed_distance = 0;    ///< > 0 above the mold [m]
-  bool converged = false;        ///< Newton's method met its tolerance
+  Eigen::Vector3d foot;        ///< on the mold [m]
+  Eigen::Vector3d normal;      ///< unit, upwards (normal.z() > 0)
+  double signed_distance = 0;  ///< > 0 above the mold [m]
+  bool converged = false;      ///< Newton's method met its tolerance
 };
 
 /// A mold is a value: copy it, share it const between threads.

@@ -12,15 +12,15 @@ namespace drapeplan {
 enum class Generators {
   perpendicular,  ///< geodesics at right angles on the surface; the first one projects to the warp direction
   axes,           ///< geodesics whose directions at the start project to the warp and weft directions
-  mid_sides,      ///< geodesics from the start point to the four mid-sides of the mold's extent (the seed's text)
+  mid_sides,  ///< geodesics from the start point to the four mid-sides of the mold's extent (the seed's text)
 };
 
 /// Flat rectangular ply. Ply frame: origin in its middle, u along the warp, v along the weft [m].
 struct Ply {
-  double width = 0;                     ///< along u [m]
-  double height = 0;                    ///< along v [m]
-  Eigen::Vector2d position{0, 0};       ///< x-y place of the ply's middle before draping [m]
-  double angle = 0;                     ///< warp direction from +x [rad]
+  double width = 0;                ///< along u [m]
+  double height = 0;               ///< along v [m]
+  Eigen::Vector2d position{0, 0};  ///< x-y place of the ply's middle before draping [m]
+  double angle = 0;                ///< warp direction from +x [rad]
 };
 
 struct MappingOptions {
@@ -32,11 +32,13 @@ struct MappingOptions {
 
 /// The mapped ply: a structured net of nodes on the mold; node (i, j) lies at u[i], v[j] of the ply.
 struct Net {
-  std::vector<double> u, v;             ///< increasing ply coordinates of the net lines [m]
-  std::vector<Eigen::Vector3d> nodes;   ///< node (i, j) at i + j * u.size(), on the mold [m]
-  bool converged = true;                ///< every cell's minimisation met its tolerance
+  std::vector<double> u, v;            ///< increasing ply coordinates of the net lines [m]
+  std::vector<Eigen::Vector3d> nodes;  ///< node (i, j) at i + j * u.size(), on the mold [m]
+  bool converged = true;               ///< every cell's minimisation met its tolerance
 
-  [[nodiscard]] const Eigen::Vector3d& node(int i, int j) const { return nodes[size_t(i) + size_t(j) * u.size()]; }
+  [[nodiscard]] const Eigen::Vector3d& node(int i, int j) const {
+    return nodes[size_t(i) + size_t(j) * u.size()];
+  }
 };
 
 /// Maps the ply onto the mold. Seed, "Energy Mapping Algorithm" (after Bergsma and Huisman): the fibre lines
@@ -49,15 +51,15 @@ Net map_ply(const Mold& mold, const Ply& ply, const MappingOptions& options);
 /// @throws std::out_of_range outside the ply.
 Eigen::Vector3d mapped_point(const Net& net, const Mold& mold, const Eigen::Vector2d& uv);
 
-/// Net nodes along the ply's outline, counter-clockwise in the ply from corner (-,-); closed: the first point is
-/// repeated at the end [m].
+/// Net nodes along the ply's outline, counter-clockwise in the ply from corner (-,-); closed: the first point
+/// is repeated at the end [m].
 std::vector<Eigen::Vector3d> prescribed_boundary(const Net& net);
 
 /// The four mapped corners in ply order (-,-), (+,-), (+,+), (-,+) [m].
 std::vector<Eigen::Vector3d> mapped_corners(const Net& net);
 
-/// Shear angle at the middle of each cell [rad]: change of the angle between warp and weft, > 0 where the angle
-/// closes. Cell (i, j) at i + j * (u.size() - 1).
+/// Shear angle at the middle of each cell [rad]: change of the angle between warp and weft, > 0 where the
+/// angle closes. Cell (i, j) at i + j * (u.size() - 1).
 std::vector<double> shear_field(const Net& net);
 
 }  // namespace drapeplan

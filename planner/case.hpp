@@ -32,21 +32,21 @@ struct ScheduleOptions {
   Aim aim = Aim::mapped;
   double preshape_height = 0.030;  ///< height of all grippers above their targets after the preshape [m]
   double preshape_duration = 5;    ///< [s]
-  double overtravel = 0.002;       ///< commanded depth below the target, so that actuators press pads down [m]
-  double settle = 1;               ///< time at rest at the end [s]
-  double uniform_duration = 5;     ///< [s]
-  double wave_duration = 3.5;      ///< stroke of one group [s]
-  double wave_delay = 0.8;         ///< [s]
+  double overtravel = 0.002;    ///< commanded depth below the target, so that actuators press pads down [m]
+  double settle = 1;            ///< time at rest at the end [s]
+  double uniform_duration = 5;  ///< [s]
+  double wave_duration = 3.5;   ///< stroke of one group [s]
+  double wave_delay = 0.8;      ///< [s]
   DelayFrom wave_delay_from = DelayFrom::start;
   Eigen::Vector2d wave_start{0, 0};  ///< in the ply frame (u, v) [m]
 };
 
 struct OptimiseOptions {
-  int wave_evaluations = 120;      ///< budget of the wave family's search
-  int gripper_evaluations = 240;   ///< budget of the per-gripper search
-  int finalists = 4;               ///< best schedules that are evaluated at the reporting fidelity
-  double shortest_stroke = 1.0;    ///< of a gripper after the preshape [s]
-  double longest_sequence = 15;    ///< after the preshape [s]
+  int wave_evaluations = 120;     ///< budget of the wave family's search
+  int gripper_evaluations = 240;  ///< budget of the per-gripper search
+  int finalists = 4;              ///< best schedules that are evaluated at the reporting fidelity
+  double shortest_stroke = 1.0;   ///< of a gripper after the preshape [s]
+  double longest_sequence = 15;   ///< after the preshape [s]
   unsigned seed = 1;
 };
 
@@ -77,24 +77,25 @@ struct Case {
   std::string name;
   std::string description;
   Ply ply;
-  Fabric material;                          ///< thickness 0: no `material` section, nothing can be simulated
+  Fabric material;  ///< thickness 0: no `material` section, nothing can be simulated
   MaterialNotes material_notes;
-  double start_height = 0;                  ///< height of the flat ply without grippers [m]
+  double start_height = 0;  ///< height of the flat ply without grippers [m]
   std::optional<Mold> mold;
-  std::optional<double> friction;           ///< Coulomb coefficient between ply and mold
+  std::optional<double> friction;  ///< Coulomb coefficient between ply and mold
   std::optional<MappingOptions> mapping;
   std::optional<RigOptions> grippers;
-  std::string grippers_source;              ///< where their figures come from, in words
-  std::optional<double> gravity;            ///< [m/s^2]
-  std::optional<double> damping;            ///< mass-proportional rate alpha of the unscaled ply [1/s]
+  std::string grippers_source;    ///< where their figures come from, in words
+  std::optional<double> gravity;  ///< [m/s^2]
+  std::optional<double> damping;  ///< mass-proportional rate alpha of the unscaled ply [1/s]
   std::vector<Edge> clamped;
   std::vector<Probe> probes;
   std::vector<Reference> references;
-  double duration = 0;                      ///< of a run without grippers [s]
+  double duration = 0;  ///< of a run without grippers [s]
   ScheduleOptions schedule;
   ScoreOptions score;
   OptimiseOptions optimise;
-  std::map<std::string, FemOptions> fidelities;  ///< at least "report"; every one starts from the `fem` section
+  std::map<std::string, FemOptions>
+      fidelities;  ///< at least "report"; every one starts from the `fem` section
 };
 
 }  // namespace drapeplan

@@ -319,7 +319,8 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
   ObjectList references = object_list(
       "references", "Published results that are shown beside the own ones", c.references, [&v](Reference& r) {
         v.field({"name", &r.name, "Name in tables", Dimension::none, {}, true});
-        v.field({"max_separation", &r.max_separation, "Largest separation", Dimension::length, from(0), true});
+        v.field(
+            {"max_separation", &r.max_separation, "Largest separation", Dimension::length, from(0), true});
         v.field({"max_boundary_offset", &r.max_boundary_offset, "Largest boundary offset", Dimension::length,
                  from(0), true});
       });

@@ -1,5 +1,5 @@
-// Reading case files: every field's name, unit, range, default and meaning is stated once, in case_fields.cpp; the
-// schema, the echo of defaults, `explain` and all error messages come from there.
+// Reading case files: every field's name, unit, range, default and meaning is stated once, in
+// case_fields.cpp; the schema, the echo of defaults, `explain` and all error messages come from there.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,8 @@
 
 namespace drapeplan {
 
-/// One fault of the input, ready to print: `cases/x.json:41: /ply/thickness: "0.3 mn": unknown unit "mn"; ...`
+/// One fault of the input, ready to print: `cases/x.json:41: /ply/thickness: "0.3 mn": unknown unit "mn";
+/// ...`
 struct InputError {
   std::string file;
   int line = 0;         ///< 0: not known (a --set override, a missing file)
@@ -25,19 +26,19 @@ struct CaseReading {
   std::vector<InputError> errors;  ///< all of them, in the order of the file
 };
 
-/// Reads and checks a case file with its `path=value` overrides (dots between keys; the value is JSON or a bare word
-/// or quantity). Never throws for bad input.
+/// Reads and checks a case file with its `path=value` overrides (dots between keys; the value is JSON or a
+/// bare word or quantity). Never throws for bad input.
 CaseReading read_case(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// The complete case with all defaults as JSON, in the file's own format and units, self-contained (a referenced
-/// material or mold is written out). Reading it again gives the same case.
+/// The complete case with all defaults as JSON, in the file's own format and units, self-contained (a
+/// referenced material or mold is written out). Reading it again gives the same case.
 nlohmann::json resolved_case(const Case& value);
 
 /// JSON Schema (draft 2020-12) of the case file.
 nlohmann::json case_schema();
 
-/// Doc, unit, range and default of the field at `path` ("grippers.joint_offset"); of a section: of all its fields.
-/// Empty if there is no such field; `nearest` then holds the most similar path.
+/// Doc, unit, range and default of the field at `path` ("grippers.joint_offset"); of a section: of all its
+/// fields. Empty if there is no such field; `nearest` then holds the most similar path.
 std::string explain_field(const std::string& path, std::string& nearest);
 
 }  // namespace drapeplan

@@ -34,7 +34,8 @@ class ProgressLine {
     stage_ = progress.stage;
     std::fprintf(stderr, "  %4d/%d  %-8s best %8.3f", progress.done, progress.planned, progress.stage.c_str(),
                  progress.best);
-    if (std::isfinite(progress.seconds_left)) std::fprintf(stderr, "   about %.0f s left", progress.seconds_left);
+    if (std::isfinite(progress.seconds_left))
+      std::fprintf(stderr, "   about %.0f s left", progress.seconds_left);
     std::fputc('\n', stderr);
   }
 
@@ -69,20 +70,27 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
              {"link_violation", finite(problem.reach().link_violation)},
              {"status", problem.reach().status},
              {"meaning", explain_reach(problem.reach_problem(), problem.reach())}};
-  return {{"case", problem.value().name},
-          {"reach", reach},
-          {"map", {{"max_shear_deg", problem.mapping().max_shear_deg}, {"mean_shear_deg", problem.mapping().mean_shear_deg}}},
-          {"baselines", {{"uniform", score_json(result.uniform.score)}, {"wave", score_json(result.wave.score)}}},
-          {"best",
-           {{"score", score_json(result.best.score)}, {"schedule", "schedule.json"}, {"candidate", search.best.name}}},
-          {"runs",
-           {{"uniform", drape_json(result.uniform)}, {"wave", drape_json(result.wave)}, {"best", drape_json(result.best)}}},
-          {"beats_baselines", search.beats_baselines},
-          {"message", search.message},
-          {"evaluations", search.evaluations},
-          {"failed_evaluations", search.failed_evaluations},
-          {"wall_seconds", result.wall_seconds},
-          {"history", history_json(search)}};
+  return {
+      {"case", problem.value().name},
+      {"reach", reach},
+      {"map",
+       {{"max_shear_deg", problem.mapping().max_shear_deg},
+        {"mean_shear_deg", problem.mapping().mean_shear_deg}}},
+      {"baselines", {{"uniform", score_json(result.uniform.score)}, {"wave", score_json(result.wave.score)}}},
+      {"best",
+       {{"score", score_json(result.best.score)},
+        {"schedule", "schedule.json"},
+        {"candidate", search.best.name}}},
+      {"runs",
+       {{"uniform", drape_json(result.uniform)},
+        {"wave", drape_json(result.wave)},
+        {"best", drape_json(result.best)}}},
+      {"beats_baselines", search.beats_baselines},
+      {"message", search.message},
+      {"evaluations", search.evaluations},
+      {"failed_evaluations", search.failed_evaluations},
+      {"wall_seconds", result.wall_seconds},
+      {"history", history_json(search)}};
 }
 
 struct PlannedCase {
@@ -101,17 +109,19 @@ PlannedCase plan_case(Case value, const PlanVerbOptions& options, const std::fil
     std::cerr << "\n  reach: " << explain_reach(problem.reach_problem(), problem.reach()) << '\n';
   }
   ProgressLine line;
-  const PlanResult result = plan(problem, {folder, options.resume, options.common.threads}, [&](const Progress& progress) {
-    if (talk) line(progress);
-  });
+  const PlanResult result =
+      plan(problem, {folder, options.resume, options.common.threads}, [&](const Progress& progress) {
+        if (talk) line(progress);
+      });
   write_plan(folder, problem, result);
   const json out = plan_json(problem, result);
   write_text(folder / "result.json", out.dump(2) + "\n");
   write_text(folder / "resolved.json", resolved_case(problem.value()).dump(2) + "\n");
   if (!options.common.json && talk) {
     std::cout << '\n' << comparison_table(problem, result) << '\n' << result.search.message << '\n';
-    std::cout << result.search.evaluations << " evaluations (" << result.search.failed_evaluations << " failed) in "
-              << std::llround(result.wall_seconds) << " s; report: " << (folder / "report.html").string() << std::endl;
+    std::cout << result.search.evaluations << " evaluations (" << result.search.failed_evaluations
+              << " failed) in " << std::llround(result.wall_seconds)
+              << " s; report: " << (folder / "report.html").string() << std::endl;
   }
   return {out, result.best.score.valid};
 }
@@ -158,7 +168,8 @@ ExitCode plan_and_add(Case value, const std::string& file, const PlanVerbOptions
     return kInputWrong;
   } catch (const std::exception& error) {
     const bool begun = std::filesystem::exists(folder);
-    failed("not finished: " + std::string(error.what()) + (begun ? "; what was done is kept in " + folder.string() : ""));
+    failed("not finished: " + std::string(error.what()) +
+           (begun ? "; what was done is kept in " + folder.string() : ""));
     return kNotFinished;
   }
 }
@@ -189,7 +200,8 @@ int plan_all(const PlanVerbOptions& options) {
 
 void add_plan(CLI::App& program, Action& action) {
   CLI::App* verb = program.add_subcommand(
-      "plan", "the main job: finds a better draping sequence and compares it with the uniform and the wave baseline");
+      "plan",
+      "the main job: finds a better draping sequence and compares it with the uniform and the wave baseline");
   const auto options = std::make_shared<PlanVerbOptions>();  // lives as long as CLI11 keeps the callback
   verb->add_option("CASE", options->files, "case files")->required();
   add_common_options(*verb, options->common);

@@ -27,15 +27,16 @@ struct SimulateOptions {
 
 std::string summary(const RunReport& report, int nodes) {
   char text[600];
-  std::snprintf(text, sizeof text,
-                "%s: %lld steps of %.3g us on %d nodes in %.1f s (%.1f million element updates per second)\n"
-                "energy [J]: kinetic %.3g, internal %.4g, external %.4g, friction %.4g, damping %.4g, constraint %.3g, "
-                "hourglass %.3g; books close to %.1e of the largest\nstate hash %s\n",
-                report.message.c_str(), static_cast<long long>(report.steps), 1e6 * report.dt, nodes,
-                report.wall_seconds, 1e-6 * report.element_updates_per_second, report.energy.kinetic,
-                report.energy.internal, report.energy.external, report.energy.friction, report.energy.damping,
-                report.energy.constraint, report.energy.hourglass, report.energy.balance_error,
-                hex(report.state_hash).c_str());
+  std::snprintf(
+      text, sizeof text,
+      "%s: %lld steps of %.3g us on %d nodes in %.1f s (%.1f million element updates per second)\n"
+      "energy [J]: kinetic %.3g, internal %.4g, external %.4g, friction %.4g, damping %.4g, constraint %.3g, "
+      "hourglass %.3g; books close to %.1e of the largest\nstate hash %s\n",
+      report.message.c_str(), static_cast<long long>(report.steps), 1e6 * report.dt, nodes,
+      report.wall_seconds, 1e-6 * report.element_updates_per_second, report.energy.kinetic,
+      report.energy.internal, report.energy.external, report.energy.friction, report.energy.damping,
+      report.energy.constraint, report.energy.hourglass, report.energy.balance_error,
+      hex(report.state_hash).c_str());
   return text;
 }
 
@@ -69,8 +70,8 @@ int simulate_free(const Case& value, const SimulateOptions& options) {
   for (const auto& [name, probe] : result["probes"].items()) {
     const auto u = probe["displacement"];
     char line[200];
-    std::snprintf(line, sizeof line, "%s moved by (%.3f, %.3f, %.3f) mm\n", name.c_str(), 1e3 * u[0].get<double>(),
-                  1e3 * u[1].get<double>(), 1e3 * u[2].get<double>());
+    std::snprintf(line, sizeof line, "%s moved by (%.3f, %.3f, %.3f) mm\n", name.c_str(),
+                  1e3 * u[0].get<double>(), 1e3 * u[1].get<double>(), 1e3 * u[2].get<double>());
     text += line;
   }
   const int code = deliver(result, text, options.common, &value);
@@ -102,21 +103,24 @@ int simulate_drape(Case value, const SimulateOptions& options) {
   result["score"] = score_json(drape.score);
   result["terms"] = model.term_names();
   char line[300];
-  std::snprintf(line, sizeof line,
-                "gap max %.2f mm, r.m.s. %.2f mm; boundary offset max %.2f mm, r.m.s. %.2f mm; shear %.1f deg; fibre "
-                "strain %.2f %%; objective %.3f\n",
-                1e3 * drape.score.max_separation, 1e3 * drape.score.rms_separation,
-                1e3 * drape.score.max_boundary_offset, 1e3 * drape.score.rms_boundary_offset,
-                drape.score.max_shear_deg, 1e2 * drape.score.max_fibre_strain, drape.score.objective);
+  std::snprintf(
+      line, sizeof line,
+      "gap max %.2f mm, r.m.s. %.2f mm; boundary offset max %.2f mm, r.m.s. %.2f mm; shear %.1f deg; fibre "
+      "strain %.2f %%; objective %.3f\n",
+      1e3 * drape.score.max_separation, 1e3 * drape.score.rms_separation,
+      1e3 * drape.score.max_boundary_offset, 1e3 * drape.score.rms_boundary_offset, drape.score.max_shear_deg,
+      1e2 * drape.score.max_fibre_strain, drape.score.objective);
   const int code =
       deliver(result, summary(drape.run.report, model.node_count()) + line, options.common, &problem.value());
   if (code == kDone && files) {
     const std::filesystem::path folder(options.common.out);
     const Case& resolved = problem.value();
-    write_frames(folder, "ply", model.scene().mesh, drape.frames, &*resolved.mold, resolved.material.thickness);
+    write_frames(folder, "ply", model.scene().mesh, drape.frames, &*resolved.mold,
+                 resolved.material.thickness);
     write_mold_vtu(folder / "mold.vtu", *resolved.mold);
-    write_text(folder / "drape.svg", drape_picture({drape_panel(problem, drape, options.fidelity, options.schedule)},
-                                                   resolved.mold->extent()));
+    write_text(folder / "drape.svg",
+               drape_picture({drape_panel(problem, drape, options.fidelity, options.schedule)},
+                             resolved.mold->extent()));
     write_schedule(folder / "schedule.json", *schedule, *resolved.grippers);
     write_schedule_csv(folder / "schedule.csv", *schedule, *resolved.grippers);
   }
@@ -127,7 +131,8 @@ int run_simulate(const SimulateOptions& options) {
   std::optional<Case> value = load_case(options.file, options.common, {"material"});
   if (!value) return kInputWrong;
   if (value->fidelities.count(options.fidelity) == 0) {
-    std::cerr << options.file << ": /fidelities: there is no fidelity \"" << options.fidelity << "\"; there are";
+    std::cerr << options.file << ": /fidelities: there is no fidelity \"" << options.fidelity
+              << "\"; there are";
     for (const auto& entry : value->fidelities) std::cerr << ' ' << entry.first;
     std::cerr << '\n';
     return kInputWrong;
@@ -159,7 +164,8 @@ void add_simulate(CLI::App& program, Action& action) {
   add_common_options(*verb, options->common);
   verb->add_option("--schedule", options->schedule, "uniform, wave or a schedule file (default: uniform)");
   verb->add_option("--fidelity", options->fidelity, "fidelity of the case (default: report)");
-  verb->add_option("--frames", options->frames, "instants written for ParaView (default: 21)")->check(CLI::Range(1, 10000));
+  verb->add_option("--frames", options->frames, "instants written for ParaView (default: 21)")
+      ->check(CLI::Range(1, 10000));
   verb->callback([&action, options] { action = [options] { return run_simulate(*options); }; });
 }
 

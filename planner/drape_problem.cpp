@@ -13,10 +13,14 @@ constexpr int kReachStarts = 2;  // beside the targets; their agreement is repor
 bool on_edge(const Ply& ply, const Eigen::Vector2d& uv, Edge edge) {
   const double slack = 1e-9;  // [m], round-off of mesh lines
   switch (edge) {
-    case Edge::left: return uv.x() <= -0.5 * ply.width + slack;
-    case Edge::right: return uv.x() >= 0.5 * ply.width - slack;
-    case Edge::bottom: return uv.y() <= -0.5 * ply.height + slack;
-    case Edge::top: return uv.y() >= 0.5 * ply.height - slack;
+    case Edge::left:
+      return uv.x() <= -0.5 * ply.width + slack;
+    case Edge::right:
+      return uv.x() >= 0.5 * ply.width - slack;
+    case Edge::bottom:
+      return uv.y() <= -0.5 * ply.height + slack;
+    case Edge::top:
+      return uv.y() >= 0.5 * ply.height - slack;
   }
   return false;
 }
@@ -108,7 +112,8 @@ Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, i
     drape.score = failed_score(drape.run.report.message);
     return drape;
   }
-  const RunExtremes extremes{drape.run.largest_actuator_force, drape.run.largest_fibre_strain, schedule.duration()};
+  const RunExtremes extremes{drape.run.largest_actuator_force, drape.run.largest_fibre_strain,
+                             schedule.duration()};
   drape.score = score_drape(model.scene().mesh, drape.run.final, *case_.mold, map_.boundary,
                             case_.material.thickness, case_.score, extremes);
   return drape;

@@ -1,4 +1,5 @@
-// A case made ready to be simulated: mapping, reach, models of all fidelities, and one evaluation as a pure function.
+// A case made ready to be simulated: mapping, reach, models of all fidelities, and one evaluation as a pure
+// function.
 #pragma once
 
 #include <map>

@@ -56,7 +56,8 @@ PlanResult plan(const DrapeProblem& problem, const PlanOptions& options,
   const Evaluate evaluate = [&](const Schedule& schedule, const std::string& fidelity) {
     const bool report = fidelity == kReport;
     Drape drape = problem.run(schedule, fidelity, report ? kFrames : 0);
-    Outcome outcome{.score = drape.score, .report = drape.run.report, .wall_seconds = drape.run.report.wall_seconds};
+    Outcome outcome{
+        .score = drape.score, .report = drape.run.report, .wall_seconds = drape.run.report.wall_seconds};
     if (report) reported.keep(schedule_hash(schedule), std::move(drape));
     return outcome;
   };
@@ -70,7 +71,8 @@ PlanResult plan(const DrapeProblem& problem, const PlanOptions& options,
   staged.gripper_fidelity = fidelity_or_report("search");
 
   PlanResult result;
-  result.search = staged_search(problem.frame(), staged, make_batch_evaluate(evaluate, log, options.threads), progress);
+  result.search =
+      staged_search(problem.frame(), staged, make_batch_evaluate(evaluate, log, options.threads), progress);
   const StagedResult& search = result.search;
   const std::array<std::pair<const Candidate*, Drape*>, 3> wanted{
       {{&search.uniform, &result.uniform}, {&search.wave, &result.wave}, {&search.best, &result.best}}};

@@ -24,8 +24,8 @@ struct PlanResult {
   double wall_seconds = 0;
 };
 
-/// Searches for the best schedule of the problem. The result depends on the case only: not on threads, nor on what was
-/// resumed. Evaluations are appended to `out`/evaluations.jsonl as they end.
+/// Searches for the best schedule of the problem. The result depends on the case only: not on threads, nor on
+/// what was resumed. Evaluations are appended to `out`/evaluations.jsonl as they end.
 /// @throws std::runtime_error if the log cannot be written or belongs to another case.
 PlanResult plan(const DrapeProblem& problem, const PlanOptions& options,
                 const std::function<void(const Progress&)>& progress);

@@ -58,7 +58,8 @@ Chart history_chart(const StagedResult& search) {
     const auto [found, fresh] = place.try_emplace(entry.fidelity, chart.series.size());
     if (fresh) {
       chart.series.push_back({.name = entry.fidelity + ": each", .points = {}, .dots = true, .steps = false});
-      chart.series.push_back({.name = entry.fidelity + ": best so far", .points = {}, .dots = false, .steps = true});
+      chart.series.push_back(
+          {.name = entry.fidelity + ": best so far", .points = {}, .dots = false, .steps = true});
     }
     const double objective = entry.valid ? entry.objective : kNaN;
     chart.series[found->second].points.emplace_back(entry.number, objective);
@@ -83,10 +84,15 @@ DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const st
                        const std::string& title) {
   const Mesh& mesh = problem.model(fidelity).scene().mesh;
   const double thickness = problem.value().material.thickness;
-  DrapePanel panel{.title = title, .subtitle = short_score(drape.score), .mesh = mesh,
-                   .position = drape.run.final.position, .separation = drape.separation,
-                   .boundary = problem.mapping().boundary, .pads = drape.run.final.pad,
-                   .pad_radius = problem.value().grippers->pad_radius, .largest_offset = std::nullopt};
+  DrapePanel panel{.title = title,
+                   .subtitle = short_score(drape.score),
+                   .mesh = mesh,
+                   .position = drape.run.final.position,
+                   .separation = drape.separation,
+                   .boundary = problem.mapping().boundary,
+                   .pads = drape.run.final.pad,
+                   .pad_radius = problem.value().grippers->pad_radius,
+                   .largest_offset = std::nullopt};
   if (drape.score.valid) {
     const BoundaryOffset offset =
         boundary_offset(ply_edge(mesh, drape.run.final, thickness), problem.mapping().boundary);
@@ -120,7 +126,8 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
       {{"uniform", &result.uniform}, {"wave", &result.wave}, {"optimised", &result.best}}};
   std::vector<DrapePanel> panels;
   for (const auto& [name, drape] : drapes) {
-    write_frames(folder, name, mesh, drape->frames, &*problem.value().mold, problem.value().material.thickness);
+    write_frames(folder, name, mesh, drape->frames, &*problem.value().mold,
+                 problem.value().material.thickness);
     panels.push_back(drape_panel(problem, *drape, kReport, name));
   }
   write_mold_vtu(folder / "mold.vtu", *problem.value().mold);
@@ -146,7 +153,8 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
                   {"wall time", format("%.0f s", result.wall_seconds)},
                   {"best candidate", search.best.name},
                   {"state hash of the best drape", hex(result.best.run.report.state_hash)},
-                  {"energy balance error", format("%.1e of the largest energy", result.best.run.report.energy.balance_error)}};
+                  {"energy balance error",
+                   format("%.1e of the largest energy", result.best.run.report.energy.balance_error)}};
   report.files = {{"schedule.json", "the optimised sequence, knots"},
                   {"schedule.csv", "the same, sampled for a robot controller"},
                   {"result.json", "all results"},
@@ -171,7 +179,8 @@ std::string comparison_table(const DrapeProblem& problem, const PlanResult& resu
       text += "  " + s.reason + "\n";
       continue;
     }
-    for (const double part : {s.max_separation, s.rms_separation, s.max_boundary_offset, s.rms_boundary_offset}) {
+    for (const double part :
+         {s.max_separation, s.rms_separation, s.max_boundary_offset, s.rms_boundary_offset}) {
       text += " " + cell(1e3 * part, "%*.2f", 10);
     }
     text += " " + cell(1e4 * s.wrinkled_area, "%*.1f", 10) + " " + cell(s.objective, "%*.2f", 9) + "\n";

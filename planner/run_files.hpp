@@ -18,8 +18,8 @@ DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const st
 void write_frames(const std::filesystem::path& folder, const std::string& name, const Mesh& mesh,
                   const std::vector<Snapshot>& frames, const Mold* mold, double thickness);
 
-/// Writes all files of a plan but result.json and resolved.json: schedule.json and .csv of the best, schedules of the
-/// baselines, contour picture, charts, VTU and PVD, report.html.
+/// Writes all files of a plan but result.json and resolved.json: schedule.json and .csv of the best,
+/// schedules of the baselines, contour picture, charts, VTU and PVD, report.html.
 void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result);
 
 /// The comparison as text: one row per reference and drape.

@@ -7,10 +7,12 @@ namespace drapeplan {
 
 /// Parts of the score (SI). Everything is evaluated at the end of the run, except forces and strains.
 struct Score {
-  double max_separation = 0;       ///< largest gap between ply underside and mold [m]
-  double rms_separation = 0;       ///< area-weighted [m]
-  double wrinkled_area = 0;        ///< area with a gap above the threshold where the ply is not bridging a hollow [m^2]
-  double max_boundary_offset = 0;  ///< largest distance between ply edge and prescribed boundary, both ways [m]
+  double max_separation = 0;  ///< largest gap between ply underside and mold [m]
+  double rms_separation = 0;  ///< area-weighted [m]
+  double wrinkled_area =
+      0;  ///< area with a gap above the threshold where the ply is not bridging a hollow [m^2]
+  double max_boundary_offset =
+      0;  ///< largest distance between ply edge and prescribed boundary, both ways [m]
   double rms_boundary_offset = 0;  ///< of the ply edge from the prescribed boundary [m]
   double max_shear_deg = 0;        ///< [deg]
   double max_fibre_strain = 0;     ///< largest |nominal strain| at mid-thickness [-]
@@ -23,18 +25,18 @@ struct Score {
 
 /// Each part is divided by its reference value and multiplied by its weight; a weight of 0 leaves it out.
 struct ScoreOptions {
-  double wrinkle_threshold = 0.001;   ///< [m]
-  double target_separation = 0.001;   ///< reference of separations [m]
+  double wrinkle_threshold = 0.001;       ///< [m]
+  double target_separation = 0.001;       ///< reference of separations [m]
   double target_boundary_offset = 0.002;  ///< reference of boundary offsets [m]
   double locking_angle_deg = 35;          ///< shear above it is penalised [deg]
   double strain_limit = 0.02;             ///< fibre strain above it is penalised [-]
   double weight_max_separation = 1;
   double weight_rms_separation = 1;
-  double weight_wrinkled_area = 1;        ///< reference: 1 % of the ply's area
+  double weight_wrinkled_area = 1;  ///< reference: 1 % of the ply's area
   double weight_max_boundary_offset = 1;
   double weight_rms_boundary_offset = 1;
-  double weight_shear = 1;                ///< per degree above the locking angle
-  double weight_duration = 0;             ///< per second
+  double weight_shear = 1;     ///< per degree above the locking angle
+  double weight_duration = 0;  ///< per second
 };
 
 }  // namespace drapeplan

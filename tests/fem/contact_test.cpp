@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kGravity = 9.81;
 
-/// A small stiff sheet that lies on a plane falling by `angle` towards +x, moving with gravity along the slope.
+/// A small stiff sheet that lies on a plane falling by `angle` towards +x, moving with gravity along the
+/// slope.
 struct Incline {
   Incline(double angle, double friction) {
     scene.mesh = rectangle_mesh(0.04, 0.04, 0.02);
@@ -26,8 +27,8 @@ struct Incline {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()).toRotationMatrix();
     test::rotate(state, model->node_count(), turn);
     const Eigen::Vector3d normal = turn.col(2);
-    // Lifted by half the thickness less the static penetration, so that nothing bounces. A bouncing node loses the
-    // friction of the step at which it touches anew.
+    // Lifted by half the thickness less the static penetration, so that nothing bounces. A bouncing node
+    // loses the friction of the step at which it touches anew.
     NodalStiffness stiffness{std::vector<double>(9), std::vector<double>(9), std::vector<double>(9)};
     model->terms().front()->add_stiffness(stiffness);
     const std::vector<double> area = nodal_areas(scene.mesh);
@@ -67,7 +68,8 @@ TEST(Friction, LetsASheetSlideAboveItsAngleWithTheClosedFormAcceleration) {
   const double acceleration = kGravity * (std::sin(angle) - 0.5 * std::cos(angle));
   Incline incline(angle, 0.5);
   const double time = 0.1;  // some 5000 steps; the measured path is up to two steps too long
-  EXPECT_NEAR(incline.slide(time), 0.5 * acceleration * time * time, 0.002 * 0.5 * acceleration * time * time);
+  EXPECT_NEAR(incline.slide(time), 0.5 * acceleration * time * time,
+              0.002 * 0.5 * acceleration * time * time);
 }
 
 TEST(Contact, CarriesTheWeightOfAPlyAtRest) {

@@ -46,7 +46,9 @@ inline Mesh distorted_mesh(double width, double height, double size, double amou
   return mesh;
 }
 
-inline Eigen::Vector3d get(const VectorField& field, size_t n) { return {field.x[n], field.y[n], field.z[n]}; }
+inline Eigen::Vector3d get(const VectorField& field, size_t n) {
+  return {field.x[n], field.y[n], field.z[n]};
+}
 inline void put(VectorField& field, size_t n, const Eigen::Vector3d& value) {
   field.x[n] = value.x();
   field.y[n] = value.y();
@@ -58,7 +60,8 @@ inline void disturb(State& state, int nodes, double size, double angle, unsigned
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (size_t n = 0; n < size_t(nodes); ++n) {
-    const Eigen::Vector3d move(unit(random), unit(random), unit(random)), turn(unit(random), unit(random), unit(random));
+    const Eigen::Vector3d move(unit(random), unit(random), unit(random)),
+        turn(unit(random), unit(random), unit(random));
     put(state.x, n, get(state.x, n) + size * move);
     put(state.d, n, (get(state.d, n) + angle * turn).normalized());
   }
@@ -74,7 +77,8 @@ inline void rotate(State& state, int nodes, const Eigen::Matrix3d& by) {
 /// The seed's mold, Eq. (1).
 inline Mold seed_mold() {
   PolynomialShape shape;
-  shape.terms = {{1, 0, 1.004}, {0, 1, 1.089}, {2, 0, -3.667}, {1, 1, -4.4}, {0, 2, -3.75}, {3, 0, 3.086}, {2, 1, 8.889}, {0, 3, 4.321}};
+  shape.terms = {{1, 0, 1.004}, {0, 1, 1.089}, {2, 0, -3.667}, {1, 1, -4.4},
+                 {0, 2, -3.75}, {3, 0, 3.086}, {2, 1, 8.889},  {0, 3, 4.321}};
   return Mold(shape, {{0, 0}, {0.45, 0.45}});
 }
 

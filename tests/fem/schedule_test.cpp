@@ -5,7 +5,9 @@
 namespace drapeplan {
 namespace {
 
-Schedule ramp() { return {.paths = {{{0, 1.0}, {2, 0.5}, {3, 0.5}}}, .blend_time = 0.2}; }
+Schedule ramp() {
+  return {.paths = {{{0, 1.0}, {2, 0.5}, {3, 0.5}}}, .blend_time = 0.2};
+}
 
 TEST(Schedule, StartsAndEndsAtRest) {
   const Schedule schedule = ramp();

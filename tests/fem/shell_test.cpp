@@ -21,7 +21,8 @@ struct ShellCase {
 class ShellTerms : public ::testing::TestWithParam<ShellCase> {
  protected:
   ShellTerms() {
-    scene.mesh = GetParam().distorted ? test::distorted_mesh(0.1, 0.06, 0.02, 0.2) : rectangle_mesh(0.1, 0.06, 0.02);
+    scene.mesh =
+        GetParam().distorted ? test::distorted_mesh(0.1, 0.06, 0.02, 0.2) : rectangle_mesh(0.1, 0.06, 0.02);
     scene.fabric = test::woven_fabric();
     scene.options.section_points = GetParam().points;
     model.emplace(scene);
@@ -43,9 +44,11 @@ class ShellTerms : public ::testing::TestWithParam<ShellCase> {
 };
 
 INSTANTIATE_TEST_SUITE_P(PointsAndMeshes, ShellTerms,
-                         ::testing::Values(ShellCase{1, false}, ShellCase{3, false}, ShellCase{5, false}, ShellCase{3, true}),
+                         ::testing::Values(ShellCase{1, false}, ShellCase{3, false}, ShellCase{5, false},
+                                           ShellCase{3, true}),
                          [](const auto& instance) {
-                           return std::to_string(instance.param.points) + (instance.param.distorted ? "PointsDistorted" : "Points");
+                           return std::to_string(instance.param.points) +
+                                  (instance.param.distorted ? "PointsDistorted" : "Points");
                          });
 
 TEST_P(ShellTerms, HaveNoForceInTheFlatRestShape) {
@@ -77,7 +80,8 @@ TEST_P(ShellTerms, AreMinusTheDerivativeOfTheirEnergy) {
       put(state.d, n, d - 1e3 * step);
       const double down_d = energy();
       put(state.d, n, d);
-      EXPECT_NEAR(get(forces[0].moment, n)[k], -(up_d - down_d) / (2e3 * h), 3e-5 * get(forces[0].moment, n).norm() + 1e-9);
+      EXPECT_NEAR(get(forces[0].moment, n)[k], -(up_d - down_d) / (2e3 * h),
+                  3e-5 * get(forces[0].moment, n).norm() + 1e-9);
     }
   }
   EXPECT_GT(largest, 1.0);
@@ -105,7 +109,8 @@ TEST_P(ShellTerms, TurnWithTheScene) {
   compute();
   std::vector<Eigen::Vector3d> before;
   for (size_t n = 0; n < nodes; ++n) before.push_back(get(forces[0].force, n));
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   test::rotate(state, int(nodes), turn);
   compute();
   for (size_t n = 0; n < nodes; ++n) EXPECT_LE((get(forces[0].force, n) - turn * before[n]).norm(), 1e-7);
@@ -128,7 +133,8 @@ TEST_P(ShellTerms, PassThePatchTest) {
   EXPECT_LE(inner, 1e-8);
 }
 
-// With a linear law the estimate must be close to the truth from below. (The fabric's estimate is for its stiffest strain.)
+// With a linear law the estimate must be close to the truth from below. (The fabric's estimate is for its
+// stiffest strain.)
 TEST_P(ShellTerms, StayBoundedBelowTheStableStepAndGrowAboveIt) {
   for (const double factor : {0.98, 1.3}) {
     Scene free = scene;
@@ -174,17 +180,21 @@ TEST(Shell, ShearsWithTheTablesStressConjugateToTheAngle) {
   scene.fabric = test::woven_fabric();
   const Model model(scene);
   State state = model.flat_state(0);
-  const double angle = 0.3;  // pure shear of a frame: power of the four corner forces = tau * rate of the angle * volume
+  const double angle =
+      0.3;  // pure shear of a frame: power of the four corner forces = tau * rate of the angle * volume
   const auto place = [](double X, double Y, double g) {
-    return Eigen::Vector3d(X * std::cos(g / 2) + Y * std::sin(g / 2), X * std::sin(g / 2) + Y * std::cos(g / 2), 0);
+    return Eigen::Vector3d(X * std::cos(g / 2) + Y * std::sin(g / 2),
+                           X * std::sin(g / 2) + Y * std::cos(g / 2), 0);
   };
   double power = 0;
-  for (size_t n = 0; n < 4; ++n) put(state.x, n, place(scene.mesh.rest[n].x(), scene.mesh.rest[n].y(), angle));
+  for (size_t n = 0; n < 4; ++n)
+    put(state.x, n, place(scene.mesh.rest[n].x(), scene.mesh.rest[n].y(), angle));
   auto forces = model.terms().front()->entries();
   model.terms().front()->forces(state, forces.data());
   for (size_t n = 0; n < 4; ++n) {
     const Eigen::Vector2d X = scene.mesh.rest[n];
-    const Eigen::Vector3d rate = (place(X.x(), X.y(), angle + 1e-6) - place(X.x(), X.y(), angle - 1e-6)) / 2e-6;
+    const Eigen::Vector3d rate =
+        (place(X.x(), X.y(), angle + 1e-6) - place(X.x(), X.y(), angle - 1e-6)) / 2e-6;
     power -= get(forces[0].force, n).dot(rate);
   }
   EXPECT_NEAR(power, scene.fabric.shear(angle) * 3e-4 * 0.02 * 0.02, 1e-3 * power);  // table resampled

@@ -108,7 +108,8 @@ TEST(Simulate, ConservesMomentumInFreeFlight) {
   const auto nodes = size_t(model.node_count());
   for (size_t n = 0; n < nodes; ++n) {  // a spin about a slanted axis, and a stretch
     const Eigen::Vector3d x = get(state.x, n), spin(1, 2, 5);
-    test::put(state.v, n, spin.cross(x) + Eigen::Vector3d(0.3, 0.2, 0.1) + 0.5 * Eigen::Vector3d(x.x(), 0, 0));
+    test::put(state.v, n,
+              spin.cross(x) + Eigen::Vector3d(0.3, 0.2, 0.1) + 0.5 * Eigen::Vector3d(x.x(), 0, 0));
     test::put(state.w, n, spin.cross(Eigen::Vector3d::UnitZ()));
   }
   const auto momenta = [&] {

@@ -1,4 +1,5 @@
-// The heavy cantilever strip against the elastica: bending stiffness, large rotations, gravity and damping together.
+// The heavy cantilever strip against the elastica: bending stiffness, large rotations, gravity and damping
+// together.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,8 +13,8 @@ namespace {
 
 constexpr double kGravity = 9.81;
 
-/// Tip drop over length of the heavy elastica D theta'' = -w (L - s) cos theta, theta(0) = 0, theta'(L) = 0, with
-/// beta = w L^3 / D. Shooting from the root: bisection on theta'(0), classical Runge-Kutta.
+/// Tip drop over length of the heavy elastica D theta'' = -w (L - s) cos theta, theta(0) = 0, theta'(L) = 0,
+/// with beta = w L^3 / D. Shooting from the root: bisection on theta'(0), classical Runge-Kutta.
 double elastica_drop(double beta) {
   constexpr int kSteps = 2000;
   const double h = 1.0 / kSteps;
@@ -35,7 +36,8 @@ double elastica_drop(double beta) {
     drop = y[2];
     return y[1];
   };
-  double low = 0, high = beta;  // theta'(L) grows with theta'(0); beta / 2 is the root slope of small deflections
+  double low = 0,
+         high = beta;  // theta'(L) grows with theta'(0); beta / 2 is the root slope of small deflections
   for (int n = 0; n < 100; ++n) (end_slope(0.5 * (low + high)) > 0 ? high : low) = 0.5 * (low + high);
   return drop;
 }
@@ -67,7 +69,8 @@ TEST(Cantilever, DropsLikeTheElasticaAndConvergesToIt) {
   const double modulus = 0.69e9, stiffness = modulus * std::pow(3e-4, 3) / 12;
   const double exact = 0.15 * elastica_drop(0.314 * kGravity * std::pow(0.15, 3) / stiffness);
   EXPECT_NEAR(exact, 0.0882175, 2e-5);  // other codes, with a slightly different gravity
-  const double coarse = std::abs(strip_drop(modulus, 8) - exact), fine = std::abs(strip_drop(modulus, 16) - exact);
+  const double coarse = std::abs(strip_drop(modulus, 8) - exact),
+               fine = std::abs(strip_drop(modulus, 16) - exact);
   EXPECT_LE(fine, 0.005 * exact);
   const double slope = std::log2(coarse / fine);
   EXPECT_GE(slope, 1.5);
