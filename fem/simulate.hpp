@@ -20,7 +20,8 @@ struct RunRequest {
 struct RunResult {
   RunReport report;
   Snapshot final;                     ///< the last state, also of a diverged run
-  double largest_fibre_strain = 0;    ///< magnitude at mid-thickness, sampled over the run [-]
+  double largest_fibre_strain = 0;    ///< tension at mid-thickness, sampled over the run [-]
+  double largest_fibre_compression = 0;  ///< the same in compression, magnitude [-]
   double largest_actuator_force = 0;  ///< [N]
 };
 

@@ -106,10 +106,10 @@ int simulate_drape(Case value, const SimulateOptions& options) {
   std::snprintf(
       line, sizeof line,
       "gap max %.2f mm, r.m.s. %.2f mm; boundary offset max %.2f mm, r.m.s. %.2f mm; shear %.1f deg; fibre "
-      "strain %.2f %%; objective %.3f\n",
+      "tension %.2f %%, compression %.2f %%; objective %.3f\n",
       1e3 * drape.score.max_separation, 1e3 * drape.score.rms_separation,
       1e3 * drape.score.max_boundary_offset, 1e3 * drape.score.rms_boundary_offset, drape.score.max_shear_deg,
-      1e2 * drape.score.max_fibre_strain, drape.score.objective);
+      1e2 * drape.score.max_fibre_strain, 1e2 * drape.score.max_fibre_compression, drape.score.objective);
   const int code =
       deliver(result, summary(drape.run.report, model.node_count()) + line, options.common, &problem.value());
   if (code == kDone && files) {

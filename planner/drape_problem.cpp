@@ -112,7 +112,7 @@ Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, i
     drape.score = failed_score(drape.run.report.message);
     return drape;
   }
-  const RunExtremes extremes{drape.run.largest_actuator_force, drape.run.largest_fibre_strain,
+  const RunExtremes extremes{drape.run.largest_actuator_force, drape.run.largest_fibre_strain, drape.run.largest_fibre_compression,
                              schedule.duration()};
   drape.score = score_drape(model.scene().mesh, drape.run.final, *case_.mold, map_.boundary,
                             case_.material.thickness, case_.score, extremes);

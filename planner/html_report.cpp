@@ -53,7 +53,7 @@ constexpr std::array kColumns{
     Column{"largest boundary offset", "mm", &Score::max_boundary_offset, 1e3, 2, true},
     Column{"boundary offset, r.m.s.", "mm", &Score::rms_boundary_offset, 1e3, 2, true},
     Column{"largest shear", "\u00b0", &Score::max_shear_deg, 1, 1, false},
-    Column{"largest fibre strain", "%", &Score::max_fibre_strain, 100, 3, false},
+    Column{"largest fibre tension", "%", &Score::max_fibre_strain, 100, 3, false},
     Column{"largest actuator force", "N", &Score::max_actuator_force, 1, 1, false},
     Column{"duration", "s", &Score::duration, 1, 1, false},
     Column{"objective", "", &Score::objective, 1, 2, true},

@@ -22,6 +22,7 @@ void for_each_part(ScoreType& s, const Visit& visit) {
   visit("rms_boundary_offset", s.rms_boundary_offset);
   visit("max_shear_deg", s.max_shear_deg);
   visit("max_fibre_strain", s.max_fibre_strain);
+  visit("max_fibre_compression", s.max_fibre_compression);
   visit("max_actuator_force", s.max_actuator_force);
   visit("duration", s.duration);
   visit("objective", s.objective);

@@ -127,6 +127,13 @@ double largest_magnitude(const std::vector<double>& values) {
   return largest;
 }
 
+/// Largest value times sign, at least 0.
+double largest(const std::vector<double>& values, double sign) {
+  double most = 0;
+  for (const double value : values) most = std::max(most, sign * value);
+  return most;
+}
+
 void check_sizes(const Mesh& mesh, const Snapshot& end, const Points& boundary) {
   const size_t nodes = mesh.rest.size(), elements = mesh.quads.size();
   if (end.position.size() != nodes || end.director.size() != nodes || end.shear.size() != elements ||
@@ -167,7 +174,7 @@ std::optional<std::string> not_finite(const Snapshot& end, const RunExtremes& ru
     return name("weft strain of element", k);
   }
   if (!std::isfinite(run.max_actuator_force)) return "actuator force";
-  if (!std::isfinite(run.max_fibre_strain)) return "fibre strain of the run";
+  if (!std::isfinite(run.max_fibre_strain + run.max_fibre_compression)) return "fibre strain of the run";
   if (!std::isfinite(run.duration)) return "duration";
   return std::nullopt;
 }
@@ -248,8 +255,9 @@ Score score_drape(const Mesh& mesh, const Snapshot& end, const Mold& mold,
   score.max_boundary_offset = offset.max;
   score.rms_boundary_offset = offset.rms;
   score.max_shear_deg = largest_magnitude(end.shear) * kDegrees;
-  score.max_fibre_strain = std::max(
-      {run.max_fibre_strain, largest_magnitude(end.warp_strain), largest_magnitude(end.weft_strain)});
+  score.max_fibre_strain = std::max({run.max_fibre_strain, largest(end.warp_strain, 1), largest(end.weft_strain, 1)});
+  score.max_fibre_compression =
+      std::max({run.max_fibre_compression, largest(end.warp_strain, -1), largest(end.weft_strain, -1)});
   score.max_actuator_force = run.max_actuator_force;
   score.duration = run.duration;
   const std::vector<double> areas = nodal_areas(mesh);

@@ -187,13 +187,15 @@ TEST(Scoring, ShearAndStrainCountOnlyBeyondTheirLimits) {
   const Mesh mesh = rectangle_mesh(kSide, kSide, 0.02);
   Snapshot end = flat(mesh, {0, 0, 0});
   end.shear[3] = -30 * std::numbers::pi / 180;
-  end.warp_strain[5] = -0.015;
+  end.warp_strain[5] = 0.015;
+  end.warp_strain[6] = -0.04;  // a fold: reported, not penalised
   EXPECT_LE(score_on_plane(mesh, end).objective, 1e-9);
   end.shear[3] = -40 * std::numbers::pi / 180;
   end.weft_strain[5] = 0.03;
   const Score score = score_on_plane(mesh, end);
   EXPECT_LE(std::abs(score.max_shear_deg - 40), 1e-9);
   EXPECT_LE(std::abs(score.max_fibre_strain - 0.03), 1e-15);
+  EXPECT_LE(std::abs(score.max_fibre_compression - 0.04), 1e-15);
   EXPECT_LE(std::abs(score.objective - (5 + 0.5)), 1e-9);
 }
 
