@@ -50,9 +50,10 @@ bool Monitor::look(const State& state, RunResult& result) {
   Snapshot strains;
   model_.shell().strains(state, strains);
   for (const auto* list : {&strains.warp_strain, &strains.weft_strain}) {
-    for (const double strain : *list)
+    for (const double strain : *list) {
       result.largest_fibre_strain = std::max(result.largest_fibre_strain, strain);
       result.largest_fibre_compression = std::max(result.largest_fibre_compression, -strain);
+    }
   }
   if (!(std::max(result.largest_fibre_strain, result.largest_fibre_compression) <= kTornStrain))
     return fail(state, "a fibre is torn or the step is unstable", result);
