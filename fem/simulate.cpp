@@ -32,6 +32,20 @@ double start_height(const Model& model, const RunRequest& request) {
   return z - rig.joint_offset;
 }
 
+/// The mold is asked vertically: a flat ply above all heights is outside, whatever the slope.
+void refuse_start_in_mold(const Model& model, const State& state) {
+  for (size_t n = 0; n < size_t(model.node_count()); ++n) {
+    const double height = model.scene().mold->height(state.x.x[n], state.x.y[n]);
+    const double thickness = model.scene().fabric.thickness;
+    if (state.x.z[n] < height - thickness) {  // false where the mold is not defined
+      throw std::invalid_argument(
+          "simulate: the flat ply starts " + std::to_string(1e3 * (height - state.x.z[n])) +
+          " mm below the mold at x = " + std::to_string(state.x.x[n]) +
+          " m, y = " + std::to_string(state.x.y[n]) + " m: check its place and the start height");
+    }
+  }
+}
+
 }  // namespace
 
 RunResult simulate(const Model& model, const RunRequest& request) {
@@ -42,6 +56,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   const double duration =
       request.duration > 0 ? request.duration : (request.schedule ? request.schedule->duration() : 0);
   if (!(duration > 0)) throw std::invalid_argument("simulate: neither a schedule nor a duration is given");
+  if (model.scene().mold) refuse_start_in_mold(model, state);
   const double count = std::ceil(duration / drive.time_scaling / dt);
   if (!(count <= kMostSteps))
     throw std::invalid_argument("simulate: the run would need more than 1e10 steps");

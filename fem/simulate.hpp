@@ -19,10 +19,10 @@ struct RunRequest {
 
 struct RunResult {
   RunReport report;
-  Snapshot final;                     ///< the last state, also of a diverged run
-  double largest_fibre_strain = 0;    ///< tension at mid-thickness, sampled over the run [-]
+  Snapshot final;                        ///< the last state, also of a diverged run
+  double largest_fibre_strain = 0;       ///< tension at mid-thickness, sampled over the run [-]
   double largest_fibre_compression = 0;  ///< the same in compression, magnitude [-]
-  double largest_actuator_force = 0;  ///< [N]
+  double largest_actuator_force = 0;     ///< [N]
 };
 
 /// Runs the model. A run that diverges is a result, never an exception.

@@ -132,6 +132,9 @@ bool CaseDocument::load(const std::filesystem::path& file, const std::string& pr
   }
   sources_.push_back({prefix, file.string(), std::move(parsed.lines), false});
   into = std::move(parsed.value);
+  if (into.is_null() && parsed.faults.empty()) {
+    errors_.push_back({file.string(), 1, prefix, "null: expected an object { ... }"});
+  }
   return !into.is_null();
 }
 

@@ -63,8 +63,18 @@ std::optional<Case> load_case(const std::string& file, const CommonOptions& opti
     print_errors(reading.errors);
     return std::nullopt;
   }
+  if (!options.out.empty() && std::filesystem::exists(options.out) &&
+      !std::filesystem::is_directory(options.out)) {
+    std::cerr << options.out << ": --out must be a folder\n";
+    return std::nullopt;
+  }
   if (options.seed) reading.value.optimise.seed = *options.seed;
   return std::move(reading.value);
+}
+
+void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options) {
+  if (options.quiet) return;
+  for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
 }
 
 int deliver(const nlohmann::json& result, const std::string& text, const CommonOptions& options,

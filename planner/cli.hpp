@@ -49,6 +49,9 @@ std::optional<Case> load_case(const std::string& file, const CommonOptions& opti
 /// Prints errors to stderr, one per line, and how many there are.
 void print_errors(const std::vector<InputError>& errors);
 
+/// Warnings of the mapping on stderr, unless --quiet.
+void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options);
+
 /// The result as text for people, or as JSON with --json; and result.json (with resolved.json if there is a
 /// case) under --out. @return kDone, or kNotFinished if a file could not be written (the reason goes to
 /// stderr).

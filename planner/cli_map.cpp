@@ -73,6 +73,7 @@ int map(const MapOptions& options) {
   if (!value) return kInputWrong;
   try {
     const MapResult result = map_case(*value);
+    print_warnings(map_warnings(*value, result), options.common);
     return deliver(result_json(*value, result), result_text(*value, result), options.common, &*value);
   } catch (const std::domain_error& error) {
     std::cerr << options.file << ": the ply cannot be mapped: " << error.what() << '\n';

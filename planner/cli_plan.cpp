@@ -108,15 +108,18 @@ PlannedCase plan_case(Case value, const PlanVerbOptions& options, const std::fil
     for (const std::string& term : problem.model(kReport).term_names()) std::cerr << " [" << term << "]";
     std::cerr << "\n  reach: " << explain_reach(problem.reach_problem(), problem.reach()) << '\n';
   }
+  print_warnings(map_warnings(problem.value(), problem.mapping()), options.common);
+  std::filesystem::create_directories(folder);
+  write_text(folder / "resolved.json", resolved_case(problem.value()).dump(2) + "\n");
   ProgressLine line;
   const PlanResult result =
       plan(problem, {folder, options.resume, options.common.threads}, [&](const Progress& progress) {
         if (talk) line(progress);
       });
-  write_plan(folder, problem, result);
+  if (result.best.score.valid)
+    write_plan(folder, problem, result);  // no schedule for a robot from failed runs
   const json out = plan_json(problem, result);
   write_text(folder / "result.json", out.dump(2) + "\n");
-  write_text(folder / "resolved.json", resolved_case(problem.value()).dump(2) + "\n");
   if (!options.common.json && talk) {
     std::cout << '\n' << comparison_table(problem, result) << '\n' << result.search.message << '\n';
     std::cout << result.search.evaluations << " evaluations (" << result.search.failed_evaluations

@@ -61,7 +61,9 @@ int reach(const ReachOptions& options) {
   const std::optional<Case> value = load_case(options.file, options.common, {"grippers"});
   if (!value) return kInputWrong;
   try {
-    const ReachProblem problem = reach_problem_of(*value, map_case(*value).targets);
+    const MapResult map = map_case(*value);
+    print_warnings(map_warnings(*value, map), options.common);
+    const ReachProblem problem = reach_problem_of(*value, map.targets);
     const ReachResult result = solve_reach(problem, kRandomStarts, value->optimise.seed);
     const int code =
         deliver(result_json(problem, result), result_text(problem, result), options.common, &*value);

@@ -86,14 +86,42 @@ int simulate_free(const Case& value, const SimulateOptions& options) {
 std::optional<Schedule> schedule_of(const DrapeProblem& problem, const std::string& name) {
   if (name == "uniform") return to_schedule(problem.frame(), uniform_strokes(problem.frame()));
   if (name == "wave") return to_schedule(problem.frame(), wave_strokes(problem.frame()));
-  ScheduleReading reading = read_schedule(name, *problem.value().grippers);
+  if (std::filesystem::is_directory(name)) {
+    std::cerr << name << ": is a folder; a schedule is uniform, wave or a file like schedule.json\n";
+    return std::nullopt;
+  }
+  const RigOptions& rig = *problem.value().grippers;
+  ScheduleReading reading = read_schedule(name, rig);
+  constexpr double kRounding = 1e-3;  // knots are rounded: a path at the limit may exceed it by as much
+  if (reading.errors.empty() && reading.value.largest_velocity() > rig.max_velocity * (1 + kRounding)) {
+    std::cerr << name << ": moves at up to " << reading.value.largest_velocity()
+              << " m/s, more than grippers.max_velocity (" << rig.max_velocity << " m/s)\n";
+    return std::nullopt;
+  }
   if (reading.errors.empty()) return std::move(reading.value);
   print_errors(reading.errors);
   return std::nullopt;
 }
 
+std::string score_line(const Drape& drape) {
+  const Score& score = drape.score;
+  if (!score.valid) return "no score: " + score.reason + "\n";
+  char line[500];
+  std::snprintf(
+      line, sizeof line,
+      "gap max %.2f mm, r.m.s. %.2f mm; boundary offset max %.2f mm, r.m.s. %.2f mm; shear %.1f deg; fibre "
+      "tension %.2f %%, compression %.2f %%; objective %.3f\n"
+      "actuator force max %.1f N; penetration %.3f mm; kinetic over internal energy at most %.2g\n",
+      1e3 * score.max_separation, 1e3 * score.rms_separation, 1e3 * score.max_boundary_offset,
+      1e3 * score.rms_boundary_offset, score.max_shear_deg, 1e2 * score.max_fibre_strain,
+      1e2 * score.max_fibre_compression, score.objective, score.max_actuator_force,
+      1e3 * drape.run.report.largest_penetration, drape.run.report.largest_kinetic_ratio);
+  return line;
+}
+
 int simulate_drape(Case value, const SimulateOptions& options) {
   const DrapeProblem problem(std::move(value));
+  print_warnings(map_warnings(problem.value(), problem.mapping()), options.common);
   const std::optional<Schedule> schedule = schedule_of(problem, options.schedule);
   if (!schedule) return kInputWrong;
   const bool files = !options.common.out.empty();
@@ -102,16 +130,8 @@ int simulate_drape(Case value, const SimulateOptions& options) {
   json result = report_json(drape.run.report);
   result["score"] = score_json(drape.score);
   result["terms"] = model.term_names();
-  char line[300];
-  std::snprintf(
-      line, sizeof line,
-      "gap max %.2f mm, r.m.s. %.2f mm; boundary offset max %.2f mm, r.m.s. %.2f mm; shear %.1f deg; fibre "
-      "tension %.2f %%, compression %.2f %%; objective %.3f\n",
-      1e3 * drape.score.max_separation, 1e3 * drape.score.rms_separation,
-      1e3 * drape.score.max_boundary_offset, 1e3 * drape.score.rms_boundary_offset, drape.score.max_shear_deg,
-      1e2 * drape.score.max_fibre_strain, 1e2 * drape.score.max_fibre_compression, drape.score.objective);
-  const int code =
-      deliver(result, summary(drape.run.report, model.node_count()) + line, options.common, &problem.value());
+  const std::string text = summary(drape.run.report, model.node_count()) + score_line(drape);
+  const int code = deliver(result, text, options.common, &problem.value());
   if (code == kDone && files) {
     const std::filesystem::path folder(options.common.out);
     const Case& resolved = problem.value();
@@ -124,12 +144,18 @@ int simulate_drape(Case value, const SimulateOptions& options) {
     write_schedule(folder / "schedule.json", *schedule, *resolved.grippers);
     write_schedule_csv(folder / "schedule.csv", *schedule, *resolved.grippers);
   }
-  return drape.run.report.status == RunStatus::done ? code : kNotFinished;
+  return drape.score.valid ? code : kNotFinished;
 }
 
 int run_simulate(const SimulateOptions& options) {
   std::optional<Case> value = load_case(options.file, options.common, {"material"});
   if (!value) return kInputWrong;
+  if (!options.common.out.empty() &&
+      std::filesystem::exists(std::filesystem::path(options.common.out) / "evaluations.jsonl")) {
+    std::cerr << options.common.out
+              << ": --out holds a plan, whose schedule would be overwritten; choose another folder\n";
+    return kInputWrong;
+  }
   if (value->fidelities.count(options.fidelity) == 0) {
     std::cerr << options.file << ": /fidelities: there is no fidelity \"" << options.fidelity
               << "\"; there are";

@@ -112,8 +112,14 @@ Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, i
     drape.score = failed_score(drape.run.report.message);
     return drape;
   }
-  const RunExtremes extremes{drape.run.largest_actuator_force, drape.run.largest_fibre_strain, drape.run.largest_fibre_compression,
-                             schedule.duration()};
+  // A gap is never negative: a ply that ended inside the mold would look perfectly draped.
+  if (drape.run.report.largest_penetration > case_.material.thickness) {
+    drape.score = failed_score("the ply ended " + std::to_string(1e3 * drape.run.report.largest_penetration) +
+                               " mm inside the mold: more than its thickness");
+    return drape;
+  }
+  const RunExtremes extremes{drape.run.largest_actuator_force, drape.run.largest_fibre_strain,
+                             drape.run.largest_fibre_compression, schedule.duration()};
   drape.score = score_drape(model.scene().mesh, drape.run.final, *case_.mold, map_.boundary,
                             case_.material.thickness, case_.score, extremes);
   return drape;

@@ -1,7 +1,9 @@
 #include "planner/map_result.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 namespace drapeplan {
@@ -31,6 +33,46 @@ MapResult map_case(const Case& value) {
   }
   result.mean_shear_deg /= area;
   return result;
+}
+
+std::vector<std::string> map_warnings(const Case& value, const MapResult& map) {
+  constexpr double kMisplaced = 0.010;  // [m]; tilt and joint offset account for less
+  std::vector<std::string> warnings;
+  char text[300];
+  const Extent& extent = value.mold->extent();
+  double beyond = 0;
+  for (const Eigen::Vector3d& p : map.boundary) {
+    const Eigen::Vector2d xy = p.head<2>();
+    beyond = std::max({beyond, (extent.lower - xy).maxCoeff(), (xy - extent.upper).maxCoeff()});
+  }
+  if (beyond > 0) {
+    std::snprintf(text, sizeof text,
+                  "the mapped ply reaches %.1f mm beyond mold.extent; the mold's formula goes on there",
+                  1e3 * beyond);
+    warnings.emplace_back(text);
+  }
+  if (map.max_shear_deg > value.score.locking_angle_deg) {
+    std::snprintf(text, sizeof text,
+                  "the mapping needs %.1f deg of shear, more than score.locking_angle (%.1f deg)",
+                  map.max_shear_deg, value.score.locking_angle_deg);
+    warnings.emplace_back(text);
+  }
+  if (value.grippers && value.grippers->fixed) {
+    const auto [i, j] = *value.grippers->fixed;
+    const int index = (j - 1) * value.grippers->columns + i - 1;
+    const Eigen::Vector2d place =
+        value.ply.position + Eigen::Rotation2Dd(value.ply.angle) * value.grippers->place(index);
+    const double apart = (map.targets[size_t(index)].head<2>() - place).norm();
+    if (apart > kMisplaced) {
+      std::snprintf(
+          text, sizeof text,
+          "the fixed gripper [%d, %d] stands %.1f mm beside its target in plan: check ply.position and "
+          "mapping.start",
+          i, j, 1e3 * apart);
+      warnings.emplace_back(text);
+    }
+  }
+  return warnings;
 }
 
 }  // namespace drapeplan

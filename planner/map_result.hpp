@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "mapping/net.hpp"
@@ -21,5 +22,10 @@ struct MapResult {
 /// Maps the ply of a case that has a mold and a mapping.
 /// @throws std::domain_error where the mold ends or a cell's minimisation fails.
 MapResult map_case(const Case& value);
+
+/// What a user should know of a mapping before trusting anything built on it: a ply that sticks out of the
+/// mold's extent, shear beyond the locking angle, a fixed gripper that would have to move in-plane to its
+/// target. One sentence each.
+std::vector<std::string> map_warnings(const Case& value, const MapResult& map);
 
 }  // namespace drapeplan

@@ -68,7 +68,10 @@ inline std::string hex(std::uint64_t value) {
 
 inline nlohmann::json score_json(const Score& score) {
   nlohmann::json out;
-  for_each_part(score, [&](const char* key, double value) { out[key] = finite(value); });
+  for_each_part(score, [&](const char* key, double value) {
+    out[key] = score.valid ? finite(value) : nlohmann::json(nullptr);  // a failed run has no parts
+  });
+  out["objective"] = finite(score.objective);
   out["valid"] = score.valid;
   if (!score.valid) out["reason"] = score.reason;
   return out;

@@ -255,7 +255,8 @@ Score score_drape(const Mesh& mesh, const Snapshot& end, const Mold& mold,
   score.max_boundary_offset = offset.max;
   score.rms_boundary_offset = offset.rms;
   score.max_shear_deg = largest_magnitude(end.shear) * kDegrees;
-  score.max_fibre_strain = std::max({run.max_fibre_strain, largest(end.warp_strain, 1), largest(end.weft_strain, 1)});
+  score.max_fibre_strain =
+      std::max({run.max_fibre_strain, largest(end.warp_strain, 1), largest(end.weft_strain, 1)});
   score.max_fibre_compression =
       std::max({run.max_fibre_compression, largest(end.warp_strain, -1), largest(end.weft_strain, -1)});
   score.max_actuator_force = run.max_actuator_force;

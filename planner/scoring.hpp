@@ -19,10 +19,10 @@ inline constexpr double kLargestValidObjective = 1e4;
 
 /// What scoring needs to know of the whole run, not only of its end.
 struct RunExtremes {
-  double max_actuator_force = 0;  ///< largest |force| of a gripper [N]
-  double max_fibre_strain = 0;  ///< largest tension; the end of the run is looked at in any case [-]
+  double max_actuator_force = 0;     ///< largest |force| of a gripper [N]
+  double max_fibre_strain = 0;       ///< largest tension; the end of the run is looked at in any case [-]
   double max_fibre_compression = 0;  ///< the same in compression, magnitude [-]
-  double duration = 0;          ///< of the schedule [s]
+  double duration = 0;               ///< of the schedule [s]
 };
 
 /// Gap between the ply's underside and the mold at every node [m], >= 0: the signed distance of the

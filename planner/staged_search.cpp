@@ -332,7 +332,9 @@ void StagedSearch::conclude() {
     std::snprintf(text, sizeof text, "both baselines failed; the best schedule, %s, has an objective of %.6g",
                   result_.best.name.c_str(), best);
   } else if (result_.beats_baselines) {
-    std::snprintf(text, sizeof text, "%s has an objective of %.6g, %.1f %% below the better baseline's %.6g",
+    std::snprintf(text, sizeof text,
+                  "the optimised sequence (candidate \"%s\") has an objective of %.4g, %.1f %% below the "
+                  "better baseline's %.4g",
                   result_.best.name.c_str(), best, 100 * (baseline - best) / std::abs(baseline), baseline);
   } else {
     std::snprintf(
