@@ -74,12 +74,4 @@ inline void rotate(State& state, int nodes, const Eigen::Matrix3d& by) {
   }
 }
 
-/// The seed's mold, Eq. (1).
-inline Mold seed_mold() {
-  PolynomialShape shape;
-  shape.terms = {{1, 0, 1.004}, {0, 1, 1.089}, {2, 0, -3.667}, {1, 1, -4.4},
-                 {0, 2, -3.75}, {3, 0, 3.086}, {2, 1, 8.889},  {0, 3, 4.321}};
-  return Mold(shape, {{0, 0}, {0.45, 0.45}});
-}
-
 }  // namespace drapeplan::test

@@ -5,6 +5,7 @@
 
 #include "fem/workspace.hpp"
 #include "tests/fem/scenes.hpp"
+#include "tests/mapping/molds.hpp"
 
 namespace drapeplan {
 namespace {
@@ -27,7 +28,7 @@ Scene small_drape() {
   scene.position = {0.225, 0.225};
   scene.gravity = 9.81;
   scene.damping = 22;
-  scene.mold = test::seed_mold();
+  scene.mold = seed_mold();
   scene.friction = 1.5;
   return scene;
 }

@@ -12,25 +12,13 @@
 #include "mapping/net.hpp"
 #include "planner/reach_ipopt.hpp"
 #include "planner/reach_nlp.hpp"
+#include "tests/mapping/molds.hpp"
 
 namespace drapeplan {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kLinkTolerance = 1e-6;  // [m], demanded of every solution
-
-/// The double-curved mold of the seed's 5x5 demonstration.
-Mold seed_mold() {
-  return {PolynomialShape{{{1, 0, 1.004},
-                           {0, 1, 1.089},
-                           {2, 0, -3.667},
-                           {1, 1, -4.4},
-                           {0, 2, -3.75},
-                           {3, 0, 3.086},
-                           {2, 1, 8.889},
-                           {0, 3, 4.321}}},
-          {{0, 0}, {0.45, 0.45}}};
-}
 
 RigOptions grid(int columns, int rows, double spacing, double offset) {
   RigOptions rig;
