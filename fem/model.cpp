@@ -39,6 +39,10 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
                            std::vector<double>(n, 0.0)};
   terms_.front()->add_stiffness(stiffness);
   if (scene_.gravity) terms_.push_back(make_gravity(unscaled, *scene_.gravity));
+  if (scene_.loads) {
+    terms_.push_back(make_loads(*scene_.loads, area));
+    terms_.back()->add_stiffness(stiffness);
+  }
   if (scene_.mold) {
     std::vector<double> contact(stiffness.translation);
     for (double& k : contact) k *= options.contact_stiffness;
@@ -63,6 +67,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
 
   std::vector<int> held = scene_.clamped;
   for (const int node : held) mass_[size_t(node)] = 0;
+  for (const int node : scene_.pinned) mass_[size_t(node)] = 0;
   if (scene_.rig) {
     const Eigen::Rotation2Dd turn(scene_.angle);
     std::vector<Eigen::Vector2d> place;
@@ -70,7 +75,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
       place.emplace_back(scene_.position + turn * scene_.rig->place(g));
     rig_.emplace(*scene_.rig, mesh.rest, mass_, inertia_, place, scene_.angle);
     for (const int node : rig_->tied()) {
-      if (mass_[size_t(node)] == 0) throw std::invalid_argument("a node under a pad is clamped");
+      if (mass_[size_t(node)] == 0) throw std::invalid_argument("a node under a pad is clamped or pinned");
     }
     held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
     if (std::sqrt(scene_.rig->actuator_stiffness / scene_.rig->pad_mass) * dt() > kServoStep) {
@@ -92,6 +97,7 @@ std::vector<std::string> Model::term_names() const {
   if (scene_.damping) names.emplace_back("mass damping");
   if (rig_) names.emplace_back(scene_.rig->interlinks ? "gripper rig with interlinks" : "gripper rig");
   if (!scene_.clamped.empty()) names.emplace_back("clamp");
+  if (!scene_.pinned.empty()) names.emplace_back("pin");
   return names;
 }
 

@@ -8,6 +8,7 @@
 
 #include "fem/fabric.hpp"
 #include "fem/gripper_rig.hpp"
+#include "fem/loads.hpp"
 #include "fem/mesh.hpp"
 #include "fem/options.hpp"
 #include "fem/shell.hpp"
@@ -29,7 +30,9 @@ struct Scene {
   std::optional<Mold> mold;
   std::optional<double> friction;  ///< needs a mold
   std::optional<RigOptions> rig;
+  std::optional<Loads> loads;
   std::vector<int> clamped;  ///< nodes that never move or turn
+  std::vector<int> pinned;   ///< nodes that never move; their directors turn
 };
 
 /// The discrete system: masses, terms, stable step.
@@ -52,7 +55,8 @@ class Model {
   /// so is what damps them critically.
   [[nodiscard]] double alpha() const { return alpha_; }
 
-  /// Scaled masses [kg] and director inertias [kg m^2] of free nodes; 0 for clamped and tied ones; padded.
+  /// Scaled masses [kg] and director inertias [kg m^2] of free nodes; 0 for clamped and tied ones; pinned
+  /// ones have no mass but an inertia; padded.
   [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
   [[nodiscard]] const std::vector<double>& inertia() const { return inertia_; }
   /// 1 / mass, 1 / inertia, 0 for clamped and tied nodes; padded.
