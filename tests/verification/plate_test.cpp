@@ -53,9 +53,12 @@ INSTANTIATE_TEST_SUITE_P(Square, Plates,
 
 TEST_P(Plates, DeflectLikeKirchhoffsPlate) {
   const PlateCase& p = GetParam();
-  for (int n : {8, 16}) test::figure(p.name, coefficient(p.edge, p.push, n, p.published), p.published);
-  const double fine = coefficient(p.edge, p.push, 32, p.published);
-  EXPECT_LE(test::figure(p.name, fine, p.published), 0.01);
+  for (const int n : {8, 16}) {
+    const double computed = coefficient(p.edge, p.push, n, p.published);
+    const double error =
+        test::figure(p.name + " plate, " + std::to_string(n) + " x " + std::to_string(n), computed, p.published);
+    EXPECT_LE(error, n == 8 ? 0.03 : 0.01);
+  }
 }
 
 }  // namespace

@@ -59,12 +59,16 @@ TEST(Cantilever, RollsUpToAFullCircleUnderATipMoment) {
 /// Bending stiffness of a strip with moduli `tension` and `compression`, seen at its tip, over the exact one.
 double seen_stiffness(int points, double tension, double compression) {
   constexpr int kElements = 4;
-  Scene scene = test::cantilever(kThin, kLength, kWidth, kElements);
+  constexpr test::Sheet kThick{1e9, 2e-2, 1};
+  Scene scene = test::cantilever(kThick, kLength, kWidth, kElements);
   scene.options.section_points = points;
+  // Leapfrog on a spring with two moduli amplifies small vibrations for some steps between 0.57 and 1 of the stable
+  // step of the stiffer one: with 0.9, fibres across the strip, at zero strain, grew from round-off.
+  scene.options.step_safety = 0.5;
   scene.fabric.tension = {{0, 0.01}, {0, 0.01 * tension}};
   scene.fabric.compression = {{0, 0.01}, {0, 0.01 * compression}};
   const double root = std::sqrt(tension) + std::sqrt(compression);
-  const double exact = std::pow(kThin.thickness, 3) / 12 * 4 * tension * compression / (root * root);
+  const double exact = std::pow(kThick.thickness, 3) / 12 * 4 * tension * compression / (root * root);
   const double angle = 0.05;
   const double moment = angle * exact / kLength * kWidth;
   scene.loads = Loads{
