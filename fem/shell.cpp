@@ -54,6 +54,11 @@ ElementGeometry<double> element_geometry(const Mesh& mesh, const std::array<int,
   const Eigen::Vector2d skew = X[0] - X[1] + X[2] - X[3];
   g.skew1 = skew.x();
   g.skew2 = skew.y();
+  const Eigen::Vector2d r = 0.25 * (ac - bd), s = 0.25 * (ac + bd);
+  g.r11 = r.x();
+  g.r12 = r.y();
+  g.r21 = s.x();
+  g.r22 = s.y();
   return g;
 }
 
@@ -193,6 +198,10 @@ size_t ShellTerm<N>::add_block(size_t first) {
     block.geometry.half2[l] = g.half2;
     block.geometry.skew1[l] = g.skew1;
     block.geometry.skew2[l] = g.skew2;
+    block.geometry.r11[l] = g.r11;
+    block.geometry.r12[l] = g.r12;
+    block.geometry.r21[l] = g.r21;
+    block.geometry.r22[l] = g.r22;
   }
   blocks_.push_back(block);
   return left;

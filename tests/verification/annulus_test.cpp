@@ -1,4 +1,5 @@
-// The slit annular plate under a lifting line load: large rotations with twist, fibres oblique to the elements.
+// The slit annular plate under a lifting line load: large rotations with twist, fibres oblique to the
+// elements.
 #include "tests/verification/kit.hpp"
 
 namespace drapeplan {
@@ -33,12 +34,13 @@ std::array<double, 2> lifted(int across, int around, double thickness, double lo
 }
 
 TEST(Annulus, LiftsLikeThePublishedSlitPlate) {
-  for (const auto& mesh : {std::array{4, 24}, {6, 36}}) for (double t : {0.3, 0.1}) {
-    const auto w = lifted(mesh[0], mesh[1], t, 0.8);
-    printf("%d %d t %g\n",mesh[0],mesh[1],t);
-    test::figure("slit annulus, W_A", w[0], 13.891);
-    test::figure("slit annulus, W_B", w[1], 17.528);
-  }
+  for (const auto& mesh : {std::array{4, 24}, {6, 36}})
+    for (double t : {0.3, 0.1}) {
+      const auto w = lifted(mesh[0], mesh[1], t, 0.8);
+      printf("%d %d t %g\n", mesh[0], mesh[1], t);
+      test::figure("slit annulus, W_A", w[0], 13.891);
+      test::figure("slit annulus, W_B", w[1], 17.528);
+    }
 }
 
 }  // namespace

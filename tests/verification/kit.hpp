@@ -52,8 +52,8 @@ struct Sheet {
 /// First bending frequency of a clamped-free strip: 1.8751^2.
 inline constexpr double kCantilever = 3.516;
 
-/// A strip of n elements along x from 0 to `length`, clamped at 0; its tip nodes are n and 2 n + 1. The damping is
-/// critical for the lowest bending mode.
+/// A strip of n elements along x from 0 to `length`, clamped at 0; its tip nodes are n and 2 n + 1. The
+/// damping is critical for the lowest bending mode.
 inline Scene cantilever(const Sheet& sheet, double length, double width, int n) {
   Scene scene;
   scene.mesh = grid(n, 1, [=](double u, double v) { return Eigen::Vector2d(u * length, v * width); });
@@ -72,9 +72,9 @@ inline void advance(const Model& model, State& state, Workspace& work) {
   state.time = double(++state.step) * model.dt();
 }
 
-/// Plays the scene from `state` until it rests: with a damping near critical for the lowest mode, a node still has
-/// about v / (alpha / 2) to go; this is below `remainder` [m] for all nodes at twenty looks one after the other,
-/// spread over two time constants.
+/// Plays the scene from `state` until it rests: with a damping near critical for the lowest mode, a node
+/// still has about v / (alpha / 2) to go; this is below `remainder` [m] for all nodes at twenty looks one
+/// after the other, spread over two time constants.
 inline void settle(const Model& model, State& state, double remainder) {
   constexpr int kQuietLooks = 20;
   constexpr double kMostConstants = 400;  // time constants: far more than any test here needs

@@ -30,8 +30,8 @@ Scene patch_scene(double thickness) {
   return scene;
 }
 
-// u = 1e-3 (x + y/2), v = 1e-3 (y + x/2) on the edge. With nu = 0 the exact stress is E times the nominal strain of
-// each fibre.
+// u = 1e-3 (x + y/2), v = 1e-3 (y + x/2) on the edge. With nu = 0 the exact stress is E times the nominal
+// strain of each fibre.
 TEST(Patch, StretchesEvenlyOnDistortedElements) {
   const double thickness = 0.02;  // a membrane problem: only the number of steps depends on it
   Scene scene = patch_scene(thickness);
@@ -41,9 +41,9 @@ TEST(Patch, StretchesEvenlyOnDistortedElements) {
     return Eigen::Vector3d(X.x() + 1e-3 * (X.x() + 0.5 * X.y()), X.y() + 1e-3 * (X.y() + 0.5 * X.x()), 0);
   };
   for (const int n : scene.clamped) put(state.x, size_t(n), field(scene.mesh.rest[size_t(n)]));
-  test::settle(model, state, 1e-16);
+  test::settle(model, state, 1e-13);
   for (size_t n = 4; n < 8; ++n)
-    EXPECT_LE((get(state.x, n) - field(scene.mesh.rest[n])).norm(), 1e-13 * kWidth);
+    EXPECT_LE((get(state.x, n) - field(scene.mesh.rest[n])).norm(), 1e-12 * kWidth);
   Snapshot strains;
   model.shell().strains(state, strains);
   const double strain = std::hypot(1.001, 5e-4) - 1, angle = 2 * std::atan(5e-4 / 1.001);
@@ -60,7 +60,8 @@ TEST(Patch, StretchesEvenlyOnDistortedElements) {
   EXPECT_LE(std::abs(pull / (1e6 * strain * thickness * kHeight) - 1), 1e-3 * sheared / pull + 1e-6);
 }
 
-/// Largest error of inner deflections over the largest deflection, for w = k (a x^2 + b x y + c y^2) / 2 on the edge.
+/// Largest error of inner deflections over the largest deflection, for w = k (a x^2 + b x y + c y^2) / 2 on
+/// the edge.
 double bending_patch_error(double thickness, double a, double b, double c) {
   Scene scene = patch_scene(thickness);
   const Model model(scene);
@@ -75,7 +76,7 @@ double bending_patch_error(double thickness, double a, double b, double c) {
     put(state.d, size_t(n),
         Eigen::Vector3d(-k * (a * X.x() + b / 2 * X.y()), -k * (c * X.y() + b / 2 * X.x()), 1).normalized());
   }
-  test::settle(model, state, 1e-12 * k);
+  test::settle(model, state, 1e-8 * k);
   double error = 0, largest = 0;
   for (size_t n = 4; n < 8; ++n) {
     const double exact = deflection(scene.mesh.rest[n]);
@@ -87,7 +88,8 @@ double bending_patch_error(double thickness, double a, double b, double c) {
 
 TEST(Patch, BendsOnDistortedElements) {
   for (const double thickness : {1e-2, 1e-3}) {
-    const double along = bending_patch_error(thickness, 1, 0, 0), twisted = bending_patch_error(thickness, 1, 1, 1);
+    const double along = bending_patch_error(thickness, 1, 0, 0),
+                 twisted = bending_patch_error(thickness, 1, 1, 1);
     std::printf("  bending patch, t = %g m: curvature along warp %.3g, with twist %.3g\n", thickness, along,
                 twisted);
   }

@@ -42,21 +42,22 @@ struct PlateCase {
 
 class Plates : public ::testing::TestWithParam<PlateCase> {};
 
-// Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells: tables 8, 23, 35, 37; they do not depend on nu.
-INSTANTIATE_TEST_SUITE_P(Square, Plates,
-                         ::testing::Values(
-                             PlateCase{"SupportedUniform", Edge::supported, Push::uniform, 0.00406235},
-                             PlateCase{"SupportedCentral", Edge::supported, Push::central, 0.01160},
-                             PlateCase{"ClampedUniform", Edge::clamped, Push::uniform, 0.00126532},
-                             PlateCase{"ClampedCentral", Edge::clamped, Push::central, 0.00560}),
-                         [](const auto& instance) { return instance.param.name; });
+// Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells: tables 8, 23, 35, 37; they do not depend on
+// nu.
+INSTANTIATE_TEST_SUITE_P(
+    Square, Plates,
+    ::testing::Values(PlateCase{"SupportedUniform", Edge::supported, Push::uniform, 0.00406235},
+                      PlateCase{"SupportedCentral", Edge::supported, Push::central, 0.01160},
+                      PlateCase{"ClampedUniform", Edge::clamped, Push::uniform, 0.00126532},
+                      PlateCase{"ClampedCentral", Edge::clamped, Push::central, 0.00560}),
+    [](const auto& instance) { return instance.param.name; });
 
 TEST_P(Plates, DeflectLikeKirchhoffsPlate) {
   const PlateCase& p = GetParam();
   for (const int n : {8, 16}) {
     const double computed = coefficient(p.edge, p.push, n, p.published);
-    const double error =
-        test::figure(p.name + " plate, " + std::to_string(n) + " x " + std::to_string(n), computed, p.published);
+    const double error = test::figure(p.name + " plate, " + std::to_string(n) + " x " + std::to_string(n),
+                                      computed, p.published);
     EXPECT_LE(error, n == 8 ? 0.03 : 0.01);
   }
 }

@@ -33,7 +33,8 @@ Tip rolled_up(int n) {
   return {state.x.x[size_t(n)], state.x.z[size_t(n)]};
 }
 
-// Sze, Liu, Lo (2004), table 1 and Mattiasson (1981): W / L and U / L of the elastica, D theta'' = - P cos theta.
+// Sze, Liu, Lo (2004), table 1 and Mattiasson (1981): W / L and U / L of the elastica, D theta'' = - P cos
+// theta.
 TEST(Cantilever, BendsUnderATipForceLikeTheElasticaAndConvergesToIt) {
   struct Published {
     double k, w, u;
@@ -62,8 +63,8 @@ double seen_stiffness(int points, double tension, double compression) {
   constexpr test::Sheet kThick{1e9, 2e-2, 1};
   Scene scene = test::cantilever(kThick, kLength, kWidth, kElements);
   scene.options.section_points = points;
-  // Leapfrog on a spring with two moduli amplifies small vibrations for some steps between 0.57 and 1 of the stable
-  // step of the stiffer one: with 0.9, fibres across the strip, at zero strain, grew from round-off.
+  // Leapfrog on a spring with two moduli amplifies small vibrations for some steps between 0.57 and 1 of the
+  // stable step of the stiffer one: with 0.9, fibres across the strip, at zero strain, grew from round-off.
   scene.options.step_safety = 0.5;
   scene.fabric.tension = {{0, 0.01}, {0, 0.01 * tension}};
   scene.fabric.compression = {{0, 0.01}, {0, 0.01 * compression}};
@@ -71,20 +72,24 @@ double seen_stiffness(int points, double tension, double compression) {
   const double exact = std::pow(kThick.thickness, 3) / 12 * 4 * tension * compression / (root * root);
   const double angle = 0.05;
   const double moment = angle * exact / kLength * kWidth;
-  scene.loads = Loads{
-      .moments = {{kElements, {0, -moment / 2, 0}}, {2 * kElements + 1, {0, -moment / 2, 0}}}};
+  scene.loads =
+      Loads{.moments = {{kElements, {0, -moment / 2, 0}}, {2 * kElements + 1, {0, -moment / 2, 0}}}};
   const Model model(scene);
   const State state = test::at_rest(model, 1e-8 * kLength);
   return angle / std::atan2(-state.d.x[kElements], state.d.z[kElements]);
 }
 
-// Two moduli, no resultant force: D = t^3/12 4 Et Ec / (sqrt Et + sqrt Ec)^2, neutral line where stresses balance.
-// Ratios of Gauss sections: by hand, from the balance of forces over the points.
+// Two moduli, no resultant force: D = t^3/12 4 Et Ec / (sqrt Et + sqrt Ec)^2, neutral line where stresses
+// balance. Ratios of Gauss sections: by hand, from the balance of forces over the points.
 TEST(Section, BendsWithTheReducedModulusOfTensionAndCompression) {
-  EXPECT_LE(test::figure("two moduli, Et/Ec 4, 5 points, D/exact", seen_stiffness(5, 1e9, 1e9 / 4), 0.9975), 2e-3);
-  EXPECT_LE(test::figure("two moduli, Et/Ec 10, 5 points, D/exact", seen_stiffness(5, 1e9, 1e9 / 10), 0.9906), 2e-3);
-  EXPECT_LE(test::figure("two moduli, Et/Ec 4, 3 points, D/exact", seen_stiffness(3, 1e9, 1e9 / 4), 1.0227), 2e-3);
-  EXPECT_LE(test::figure("two moduli, Et/Ec 10, 3 points, D/exact", seen_stiffness(3, 1e9, 1e9 / 10), 0.990), 2e-3);
+  EXPECT_LE(test::figure("two moduli, Et/Ec 4, 5 points, D/exact", seen_stiffness(5, 1e9, 1e9 / 4), 0.9975),
+            2e-3);
+  EXPECT_LE(test::figure("two moduli, Et/Ec 10, 5 points, D/exact", seen_stiffness(5, 1e9, 1e9 / 10), 0.9906),
+            2e-3);
+  EXPECT_LE(test::figure("two moduli, Et/Ec 4, 3 points, D/exact", seen_stiffness(3, 1e9, 1e9 / 4), 1.0227),
+            2e-3);
+  EXPECT_LE(test::figure("two moduli, Et/Ec 10, 3 points, D/exact", seen_stiffness(3, 1e9, 1e9 / 10), 0.990),
+            2e-3);
 }
 
 }  // namespace
