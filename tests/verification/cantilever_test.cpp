@@ -79,7 +79,7 @@ TEST(Cantilever, DropsLikeTheElasticaAndConvergesToIt) {
 
 /// Tip drop over length of a strip of n elements whose weight is beta D / L^3.
 double heavy_drop(double beta, int n) {
-  const test::Sheet sheet{1e9, 2e-3, 1};  // transverse shear adds beta (t / L)^2 / 5: 2e-5 at most
+  const test::Sheet sheet{1e9, 4e-3, 1};  // transverse shear adds beta (t / L)^2 / 5: 6e-5 at most
   Scene scene = test::cantilever(sheet, 1, 0.05, n);
   scene.gravity = beta * sheet.bending_stiffness() / sheet.density;
   const Model model(scene);
@@ -93,6 +93,8 @@ TEST(Cantilever, DropsWithSecondOrderFromSmallToLargeRotations) {
     char name[64];
     std::snprintf(name, sizeof name, "heavy strip, w L^3/D = %g, drop/L", beta);
     EXPECT_LE(test::figure(name, fine, exact), 0.005);
+    // Small rotations: nodes of a straight strip are exact up to where the run stops (1e-6 of the length).
+    if (beta < 1) continue;
     test::expect_second_order(coarse - exact, fine - exact);
   }
 }

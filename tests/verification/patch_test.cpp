@@ -56,8 +56,7 @@ TEST(Patch, StretchesEvenlyOnDistortedElements) {
   auto forces = model.terms().front()->entries();
   model.terms().front()->forces(state, forces.data());
   const double pull = -(forces[0].force.x[1] + forces[0].force.x[2]);
-  const double sheared = 0.5 * 1e6 * angle * thickness * kHeight;  // tau and its direction, first order
-  EXPECT_LE(std::abs(pull / (1e6 * strain * thickness * kHeight) - 1), 1e-3 * sheared / pull + 1e-6);
+  EXPECT_LE(std::abs(pull / (1e6 * strain * thickness * kHeight) - 1), 1e-3);  // turned by the strain, 5e-4
 }
 
 /// Largest error of inner deflections over the largest deflection, for w = k (a x^2 + b x y + c y^2) / 2 on
@@ -66,7 +65,7 @@ double bending_patch_error(double thickness, double a, double b, double c) {
   Scene scene = patch_scene(thickness);
   const Model model(scene);
   State state = model.flat_state(0);
-  const double k = 1e-3;
+  const double k = 1e-5;  // 1/m: the membrane sees the square of deflection over thickness
   const auto deflection = [&](const Eigen::Vector2d& X) {
     return k / 2 * (a * X.x() * X.x() + b * X.x() * X.y() + c * X.y() * X.y());
   };
@@ -86,12 +85,13 @@ double bending_patch_error(double thickness, double a, double b, double c) {
   return error / largest;
 }
 
+// With transverse shear taken at the middle of the element along the fibres, as in the first version, inner
+// nodes missed by 34 % (along warp) and 43 % (with twist).
 TEST(Patch, BendsOnDistortedElements) {
   for (const double thickness : {1e-2, 1e-3}) {
-    const double along = bending_patch_error(thickness, 1, 0, 0),
-                 twisted = bending_patch_error(thickness, 1, 1, 1);
-    std::printf("  bending patch, t = %g m: curvature along warp %.3g, with twist %.3g\n", thickness, along,
-                twisted);
+    EXPECT_LE(bending_patch_error(thickness, 1, 0, 0), 1e-5)
+        << thickness;  // constant curvature along the warp
+    EXPECT_LE(bending_patch_error(thickness, 1, 1, 1), 1e-5) << thickness;  // MacNeal and Harder's field
   }
 }
 
