@@ -21,8 +21,8 @@ struct NodalLoad {
 /// the director's angular velocity. It follows d, so it has an energy (- |M| times the angle) only as long as
 /// the director turns in the plane normal to M; otherwise its work depends on the path.
 struct Loads {
-  std::vector<NodalLoad> forces{};     ///< [N]; several of one node add
-  std::vector<NodalLoad> moments{};    ///< on directors [N m]; several of one node add
+  std::vector<NodalLoad> forces{};    ///< [N]; several of one node add
+  std::vector<NodalLoad> moments{};   ///< on directors [N m]; several of one node add
   Eigen::Vector3d pressure{0, 0, 0};  ///< force per rest area of the ply [Pa]
 };
 

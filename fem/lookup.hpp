@@ -41,7 +41,7 @@ class Lookup {
     const Lanes place = stdx::clamp((at - Lanes(lower_)) * Lanes(per_step_), Lanes(0.0), Lanes(last_));
     return Lanes([&](auto l) { return steepest_[size_t(int(place[size_t(l)]))]; });
   }
-  static constexpr int kLookAhead = 5;
+  static constexpr int kLookAhead = 2;
   /// Integral of the function from 0 to `at`.
   [[nodiscard]] double integral(double at) const;
   /// Steepest piece.

@@ -32,7 +32,8 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   terms_.push_back(std::move(shell));
   NodalStiffness stiffness(mesh.node_count());
   terms_.front()->add_stiffness(stiffness);
-  // Directors weigh as much as their stiffness demands (see shell_bounds.hpp), so that they never govern the step.
+  // Directors weigh as much as their stiffness demands (see shell_bounds.hpp), so that they never govern the
+  // step.
   gyration2_.resize(n);
   for (size_t k = 0; k < n; ++k) gyration2_[k] = stiffness.rotation[k] / stiffness.translation[k];
   if (scene_.gravity) terms_.push_back(make_gravity(unscaled, *scene_.gravity));
@@ -95,7 +96,7 @@ double Model::stable_dt(const NodalStiffness& stiffness) const {
     const double bound = std::max(stiffness.translation[k], stiffness.rotation[k] / gyration2_[k]);
     largest = std::max(largest, bound / own_mass_[k]);
   }
-  return 2 / std::sqrt(largest);
+  return 2 / std::sqrt(largest) * viscous_share(scene_.options.bulk_viscosity);
 }
 
 double Model::free_mass() const {
@@ -117,8 +118,9 @@ std::uint64_t Model::fingerprint() const {
   }
   const FemOptions& o = scene_.options;
   add(std::array{stable_dt_, alpha_, o.time_scaling, o.step_safety, double(o.section_points),
-                 double(o.step_interval), o.hourglass, o.contact_stiffness, scene_.gravity.value_or(0),
-                 scene_.friction.value_or(-1), scene_.position.x(), scene_.position.y(), scene_.angle});
+                 double(o.step_interval), o.hourglass, o.bulk_viscosity, o.contact_stiffness,
+                 scene_.gravity.value_or(0), scene_.friction.value_or(-1), scene_.position.x(),
+                 scene_.position.y(), scene_.angle});
   for (const std::string& name : term_names()) hash.add(name);
   return hash.value();
 }
@@ -141,8 +143,9 @@ State Model::flat_state(double height) const {
     state.anchor = VectorField(n);
     state.stuck.assign(padded(n), 0.0);
   }
-  state.lagged.assign(shell_->lagged_count(), 0.0);
+  state.history.assign(shell_->history_count(), 0.0);
   state.dt = state.dt_before = dt();
+  state.stable_dt = stable_dt_;
   const Eigen::Rotation2Dd turn(scene_.angle);
   for (size_t k = 0; k < padded(n); ++k) {  // padding repeats the last node and has no mass
     const Eigen::Vector2d xy = scene_.position + turn * scene_.mesh.rest[std::min(k, size_t(n) - 1)];

@@ -17,6 +17,10 @@ constexpr double kFibreStep = 4e-5;  // strain per piece: the power law of tensi
 constexpr double kTabulatedSine = 0.98;  // 78.5 degrees; tau / cos g goes on linearly from there
 constexpr int kShearIntervals = 490;
 
+/// State::history has slots of one strain per element: mid-thickness strain of both fibres at the step
+/// before, then, with rates, the lagged strains of all section points.
+constexpr size_t kStrainSlots = 2;
+
 /// A run of kLanes elements; the last one is filled up with copies of its last element that have no area.
 struct Block {
   std::array<std::array<int, size_t(kLanes)>, 4> node;  ///< by corner and lane
@@ -110,7 +114,9 @@ class ShellTerm final : public Shell {
       : mesh_(mesh),
         material_(kernel_material(fabric, options)),
         fibre_slope_(material_.fibre.largest_slope()),
-        shear_slope_(fabric.shear.slowest().largest_slope()) {
+        shear_slope_(fabric.shear.slowest().largest_slope()),
+        viscous_mass_(options.bulk_viscosity * options.mass_scaling * fabric.areal_density /
+                      (SectionRule<N>::weight[N / 2] * fabric.thickness)) {
     if constexpr (kRates) {
       tables_ = rate_tables(fabric);
       fibre_slope_ = tables_.fibre.largest_slope(tables_.gain);
@@ -167,12 +173,22 @@ class ShellTerm final : public Shell {
     force.fill(0);
     moment.fill(0);
     Corners<Lanes> x, d, f, m;
+    // The stiffest fibre that the stable step dt allows has a stress per strain of density (length / dt)^2,
+    // length = 2 half: stress = ratio times that, times the change of strain in a step, is the stated damping
+    // ratio.
+    const double viscous = 4 * viscous_mass_ / (state.stable_dt * state.stable_dt);
     const double follow = kRates ? -std::expm1(-state.dt * lag_rate_) : 0;
     for (size_t b = 0; b < blocks_.size(); ++b) {
       const Block& block = blocks_[b];
       load_corners(state, block, x, d);
       auto law = law_of(state, b, follow);
-      shell_forces<N>(block.geometry, material_, law, x, d, f, m);
+      double* before = &state.history[b * size_t(kLanes)];
+      FibreViscosity<Lanes> viscosity{Lanes(viscous) * block.geometry.half1 * block.geometry.half1,
+                                      Lanes(viscous) * block.geometry.half2 * block.geometry.half2,
+                                      load(before), load(before + slot_stride())};
+      shell_forces<N>(block.geometry, material_, law, viscosity, x, d, f, m);
+      store(viscosity.strain1, before);
+      store(viscosity.strain2, before + slot_stride());
       // Corners 0 and 2, then 1 and 3: neighbours in a row share nodes, so their sums are kept apart in time.
       for (const size_t c : {size_t(0), size_t(2), size_t(1), size_t(3)}) {
         scatter(f[c], block, c, force);
@@ -206,7 +222,9 @@ class ShellTerm final : public Shell {
     }
   }
 
-  [[nodiscard]] size_t lagged_count() const override { return kRates ? 3 * N * slot_stride() : 0; }
+  [[nodiscard]] size_t history_count() const override {
+    return (kStrainSlots + (kRates ? 3 * size_t(N) : 0)) * slot_stride();
+  }
 
  private:
   size_t add_block(size_t first);
@@ -214,14 +232,16 @@ class ShellTerm final : public Shell {
 
   auto slopes_of(const State& state, size_t block) const {
     if constexpr (kRates) {
-      return RateSlopes(tables_, &state.lagged[block * size_t(kLanes)], slot_stride());
+      return RateSlopes(tables_, &state.history[kStrainSlots * slot_stride() + block * size_t(kLanes)],
+                        slot_stride());
     } else {
       return StaticLaw(material_);
     }
   }
   auto law_of(State& state, size_t block, double follow) const {
     if constexpr (kRates) {
-      return RateLaw(tables_, &state.lagged[block * size_t(kLanes)], slot_stride(), follow);
+      return RateLaw(tables_, &state.history[kStrainSlots * slot_stride() + block * size_t(kLanes)],
+                     slot_stride(), follow);
     } else {
       return StaticLaw(material_);
     }
@@ -269,7 +289,9 @@ class ShellTerm final : public Shell {
   Mesh mesh_;
   KernelMaterial material_;
   double fibre_slope_, shear_slope_;  ///< steepest, instantaneous ones with rates [Pa]
-  double lag_rate_ = 0;               ///< of lagged strains, in the simulation's time [1/s]
+  double
+      viscous_mass_;  ///< damping ratio times scaled mass per area, over the middle point's weight [kg/m^3]
+  double lag_rate_ = 0;  ///< of lagged strains, in the simulation's time [1/s]
   std::conditional_t<kRates, RateTables, NoTables> tables_;
   std::vector<ElementGeometry<double>> geometry_;
   std::vector<Block> blocks_;

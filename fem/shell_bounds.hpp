@@ -22,23 +22,24 @@ inline SectionStiffness<double> steepest_section(double thickness, double fibre,
   return {stretch, stretch, couple, couple, bend, bend, thickness * shear};
 }
 
-/// Squared radius of gyration of directors [m^2]: that of the section, enlarged by a ninth of the element's area
-/// as in established explicit codes, so that bending and transverse shear never govern the step.
+/// Squared radius of gyration of directors [m^2]: that of the section, enlarged by a ninth of the element's
+/// area as in established explicit codes, so that bending and transverse shear never govern the step.
 template <class V>
 V gyration_squared(const ElementGeometry<V>& g, double thickness) {
   constexpr double kElementShare = 1.0 / 9;
   return V(thickness * thickness / 12) + V(kElementShare) * g.area;
 }
 
-/// Bound k of an element's tangent [N/m]: its energy's second variation is at most k times the sum over corners
-/// of |dx|^2 + gyration^2 |dd|^2.
+/// Bound k of an element's tangent [N/m]: its energy's second variation is at most k times the sum over
+/// corners of |dx|^2 + gyration^2 |dd|^2.
 ///
 /// The variation is a sum of squares, one per mode: stiffness times (vector . corner values)^2. Modes whose
-/// vectors are orthogonal do not add: the largest counts. In a rectangle all are (the gradients b_1, b_2 and h
-/// are, and so are the directions along a fibre, across it and off the surface); what distortion adds comes on
-/// top as products.
+/// vectors are orthogonal do not add: the largest counts. In a rectangle all are (the gradients b_1, b_2 and
+/// h are, and so are the directions along a fibre, across it and off the surface); what distortion adds comes
+/// on top as products.
 template <class V>
-V element_bound(const ElementGeometry<V>& g, const KernelMaterial& material, const SectionStiffness<V>& section) {
+V element_bound(const ElementGeometry<V>& g, const KernelMaterial& material,
+                const SectionStiffness<V>& section) {
   using std::abs, std::max, std::sqrt;
   const V gyration2 = gyration_squared(g, material.thickness), per_gyration = V(1.0) / sqrt(gyration2);
   const V b11 = V(2.0) * (g.b10 * g.b10 + g.b11 * g.b11), b22 = V(2.0) * (g.b20 * g.b20 + g.b21 * g.b21);

@@ -172,11 +172,20 @@ TransverseShear<V> transverse_shear(const ElementGeometry<V>& g, const ElementMo
   return out;
 }
 
+/// Linear bulk viscosity along both fibres, at mid-thickness: stress = modulus times change over the last
+/// step.
+template <class V>
+struct FibreViscosity {
+  V modulus1, modulus2;  ///< [Pa], over the weight of the middle section point
+  V strain1, strain2;    ///< in: of the step before; out: of this one
+};
+
 /// Forces that the element exerts on its corners: on positions [N] and on directors [N m].
 /// @param law  stresses at section points, like StaticLaw.
 template <int N, class V, class Law>
-void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, Law& law, const Corners<V>& x,
-                  const Corners<V>& d, Corners<V>& force, Corners<V>& moment) {
+void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, Law& law,
+                  FibreViscosity<V>& viscosity, const Corners<V>& x, const Corners<V>& d, Corners<V>& force,
+                  Corners<V>& moment) {
   using std::sqrt;
   const ElementMotion<V> m = element_motion(g, x, d);
   const V zero(0.0), one(1.0);
@@ -189,8 +198,15 @@ void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, L
     const V length1 = sqrt(dot(f1, f1)), length2 = sqrt(dot(f2, f2));
     const V inverse1 = one / length1, inverse2 = one / length2;
     const V sine = dot(f1, f2) * inverse1 * inverse2;
-    const V t1 = law.fibre(V(length1 - one), 3 * k), t2 = law.fibre(V(length2 - one), 3 * k + 1),
-            shear = law.shear(sine, 3 * k + 2);
+    const V e1 = length1 - one, e2 = length2 - one;
+    V t1 = law.fibre(e1, 3 * k), t2 = law.fibre(e2, 3 * k + 1);
+    const V shear = law.shear(sine, 3 * k + 2);
+    if (2 * k + 1 == size_t(N)) {  // the middle one
+      t1 += viscosity.modulus1 * (e1 - viscosity.strain1);
+      t2 += viscosity.modulus2 * (e2 - viscosity.strain2);
+      viscosity.strain1 = e1;
+      viscosity.strain2 = e2;
+    }
     const V both = w * shear * inverse1 * inverse2;
     const Vec3<V> p1 = (w * (t1 - shear * sine * inverse1) * inverse1) * f1 + both * f2;
     const Vec3<V> p2 = (w * (t2 - shear * sine * inverse2) * inverse2) * f2 + both * f1;

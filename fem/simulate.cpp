@@ -80,7 +80,8 @@ void choose_step(const Model& model, const Clock& clock, State& state, NodalStif
   if (options.step_interval == 0) {
     state.dt = model.dt();
   } else if (state.step % options.step_interval == 0) {
-    state.dt = options.step_safety * stable_step(model, state, scratch);
+    state.stable_dt = stable_step(model, state, scratch);
+    state.dt = options.step_safety * state.stable_dt;
     if (state.step == 0) state.dt_before = state.dt;
   }
   state.dt = std::min(state.dt, clock.end - state.time);

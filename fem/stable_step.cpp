@@ -80,7 +80,10 @@ double stable_step(const Model& model, const State& state, NodalStiffness& scrat
 }
 
 double true_stable_step(const Model& model, const State& state) {
-  Tangent tangent(model, state);
+  Scene undamped = model.scene();  // viscous stress changes with strain as well, but is no stiffness
+  undamped.options.bulk_viscosity = 0;
+  const Model elastic(std::move(undamped));
+  Tangent tangent(elastic, state);
   Modes now(tangent.size()), before = Modes::Zero(tangent.size());
   for (Eigen::Index k = 0; k < now.size(); ++k) now[k] = std::sin(1.0 + 12.9898 * double(k) * double(k));
   now.normalize();
@@ -99,7 +102,8 @@ double true_stable_step(const Model& model, const State& state) {
   }
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum;
   spectrum.computeFromTridiagonal(diagonal.head(size), side.head(size - 1), Eigen::EigenvaluesOnly);
-  return 2 / std::sqrt(spectrum.eigenvalues().maxCoeff());
+  return 2 / std::sqrt(spectrum.eigenvalues().maxCoeff()) *
+         viscous_share(model.scene().options.bulk_viscosity);
 }
 
 }  // namespace drapeplan

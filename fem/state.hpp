@@ -39,15 +39,16 @@ struct RunRecord {
 /// Positions at t, velocities at t - dt_before / 2 (central differences with a changing step).
 struct State {
   std::int64_t step = 0;
-  double time = 0;             ///< [s], of the simulation
-  double dt = 0;               ///< from t to the next positions [s]
-  double dt_before = 0;        ///< from the last positions to t [s]
-  VectorField x, v;            ///< nodes [m], [m/s]
-  VectorField d, w;            ///< unit directors and their rate of change, normal to them [1/s]
-  VectorField anchor;          ///< where a node sticks to the mold [m]; empty without friction
-  std::vector<double> stuck;   ///< 1: the node touched the mold at the last step; empty without friction
-  std::vector<double> lagged;  ///< strains that follow the true ones by the rate filter; see rates.hpp
-  std::vector<PadState> pads;  ///< empty without a rig
+  double time = 0;              ///< [s], of the simulation
+  double dt = 0;                ///< from t to the next positions [s]
+  double dt_before = 0;         ///< from the last positions to t [s]
+  double stable_dt = 0;         ///< stable step when dt was last chosen [s]
+  VectorField x, v;             ///< nodes [m], [m/s]
+  VectorField d, w;             ///< unit directors and their rate of change, normal to them [1/s]
+  VectorField anchor;           ///< where a node sticks to the mold [m]; empty without friction
+  std::vector<double> stuck;    ///< 1: the node touched the mold at the last step; empty without friction
+  std::vector<double> history;  ///< what elements remember of their strains; see shell.cpp
+  std::vector<PadState> pads;   ///< empty without a rig
   std::array<double, kBooks> work{};  ///< done on the moving masses since the start [J]
   RunRecord record;                   ///< not part of the hash
 

@@ -19,12 +19,12 @@ constexpr size_t kWord = 8;  // bytes
 template <class StateType, class Visit>
 void visit_state(StateType& s, const Visit& visit) {
   visit(s.step);
-  for (auto* value : {&s.time, &s.dt, &s.dt_before}) visit(*value);
+  for (auto* value : {&s.time, &s.dt, &s.dt_before, &s.stable_dt}) visit(*value);
   for (auto* field : {&s.x, &s.v, &s.d, &s.w, &s.anchor}) {
     for (auto* part : {&field->x, &field->y, &field->z}) visit(*part);
   }
   visit(s.stuck);
-  visit(s.lagged);
+  visit(s.history);
   visit(s.pads);
   for (auto& value : s.work) visit(value);
   auto& r = s.record;

@@ -17,8 +17,8 @@ struct Forces {
   VectorField moment;  ///< on directors [N m]; empty if the term never touches them
 };
 
-/// A diagonal that is nowhere below the stiffness of all terms: u.K u <= sum over nodes of translation |x|^2 +
-/// rotation |d|^2. Bounds of terms add, and those of elements at their nodes; then no squared frequency is
+/// A diagonal that is nowhere below the stiffness of all terms: u.K u <= sum over nodes of translation |x|^2
+/// + rotation |d|^2. Bounds of terms add, and those of elements at their nodes; then no squared frequency is
 /// above the largest bound over mass (Fried's element bound, weighted per node).
 struct NodalStiffness {
   explicit NodalStiffness(int nodes) : translation(size_t(nodes), 0.0), rotation(size_t(nodes), 0.0) {}

@@ -282,6 +282,10 @@ void visit_fem(FieldVisitor& v, FemOptions& f) {
            "Steps between two choices of the step; 0: one step that is safe for all strains of the tables",
            Dimension::none, from(0, 1e4)});
   v.field({"rates", &f.rates, "false: only the slowest curves of the material are used"});
+  v.field({"bulk_viscosity", &f.bulk_viscosity,
+           "Damping ratio along the fibres at the highest frequency; keeps fibres stable that are stiffer in "
+           "tension than in compression",
+           Dimension::none, from(0, 1)});
   v.field({"hourglass", &f.hourglass, "Hourglass stiffness over the physical one of a fibre in compression",
            Dimension::none, from(0, 100)});
   v.field({"contact_stiffness", &f.contact_stiffness,
