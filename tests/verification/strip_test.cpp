@@ -66,8 +66,8 @@ double seen_stiffness(int points, double tension, double compression) {
   // Leapfrog on a spring with two moduli amplifies small vibrations for some steps between 0.57 and 1 of the
   // stable step of the stiffer one: with 0.9, fibres across the strip, at zero strain, grew from round-off.
   scene.options.step_safety = 0.5;
-  scene.fabric.tension = {{0, 0.01}, {0, 0.01 * tension}};
-  scene.fabric.compression = {{0, 0.01}, {0, 0.01 * compression}};
+  scene.fabric.tension = Curve{{0, 0.01}, {0, 0.01 * tension}};
+  scene.fabric.compression = Curve{{0, 0.01}, {0, 0.01 * compression}};
   const double root = std::sqrt(tension) + std::sqrt(compression);
   const double exact = std::pow(kThick.thickness, 3) / 12 * 4 * tension * compression / (root * root);
   const double angle = 0.05;
