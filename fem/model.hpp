@@ -53,8 +53,8 @@ class Model {
   [[nodiscard]] double stable_dt() const { return stable_dt_; }
   /// The step played where it does not change with the state: step_safety times stable_dt [s].
   [[nodiscard]] double dt() const { return scene_.options.step_safety * stable_dt_; }
-  /// Largest stable step for given stiffness rows [s]: Gershgorin's rows over the nodes' own masses. Nodes
-  /// that are tied or clamped count as well: what holds them only lowers frequencies.
+  /// Largest stable step for given stiffness bounds over the nodes' own masses [s]. Nodes that are tied or
+  /// clamped count as well: what holds them only lowers frequencies.
   [[nodiscard]] double stable_dt(const NodalStiffness& stiffness) const;
   /// Damping rate on the scaled mass [1/s]: with a mass s times larger, modes are sqrt(s) times slower, and
   /// so is what damps them critically. s: of the whole ply.
