@@ -121,6 +121,12 @@ std::uint64_t Model::fingerprint() const {
                  double(o.step_interval), o.hourglass, o.bulk_viscosity, o.contact_stiffness,
                  scene_.gravity.value_or(0), scene_.friction.value_or(-1), scene_.position.x(),
                  scene_.position.y(), scene_.angle});
+  if (scene_.loads) {
+    for (const auto* list : {&scene_.loads->forces, &scene_.loads->moments}) {
+      for (const NodalLoad& load : *list) hash.add(double(load.node)), add(load.value);
+    }
+    add(scene_.loads->pressure);
+  }
   for (const std::string& name : term_names()) hash.add(name);
   return hash.value();
 }

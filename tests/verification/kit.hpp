@@ -69,7 +69,7 @@ inline void advance(const Model& model, State& state, Workspace& work) {
   compute_forces(model, state, work);
   kick_nodes(model, state, work);
   drift_nodes(model, state);
-  state.time = double(++state.step) * model.dt();
+  advance_clock(state);
 }
 
 /// Plays the scene from `state` until it rests: with a damping near critical for the lowest mode, a node
