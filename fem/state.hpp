@@ -11,8 +11,8 @@
 namespace drapeplan {
 
 /// Books of work, one entry each. See Energies for their meaning.
-enum class Book { internal, gravity, contact, friction, damping, actuator, interlink, stop };
-inline constexpr size_t kBooks = 8;
+enum class Book { internal, gravity, contact, friction, damping, actuator, interlink, stop, release };
+inline constexpr size_t kBooks = 9;
 
 /// A rigid pad: its centre on the ply's mid-surface, its orientation and its half-step velocities.
 struct PadState {
@@ -20,6 +20,7 @@ struct PadState {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity{0, 0, 0};          ///< at t - dt/2 [m/s]
   Eigen::Vector3d angular_velocity{0, 0, 0};  ///< at t - dt/2 [rad/s]
+  bool released = false;                      ///< its nodes move on their own
 };
 
 /// Positions at t, velocities at t - dt/2 (central differences).
