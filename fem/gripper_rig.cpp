@@ -154,9 +154,9 @@ void GripperRig::let_go(State& state, const RigDrive& drive) const {
 }
 
 /// Velocities at t + dt/2 as if there were no constraints.
-void GripperRig::free_velocities(State& state, const RigDrive& drive, double dt, double alpha, RigScratch& s,
-                                 RigRecord& record) const {
-  const Damped damped(dt, alpha);
+void GripperRig::free_velocities(State& state, const RigDrive& drive, double alpha, RigScratch& s) const {
+  const double h = state.kick_time();
+  const Damped damped(h, alpha);
   for (size_t g = 0; g < pads_.size(); ++g) {
     const Pad& body = pads_[g];
     const PadState& pad = state.pads[g];
@@ -164,7 +164,8 @@ void GripperRig::free_velocities(State& state, const RigDrive& drive, double dt,
     const Vector3d normal = turn.col(2), arm = rig_.joint_offset * normal;
     const double mass = body.mass_of(pad), inertia = body.inertia_of(pad);
     s.actuator[g] = actuator_force(state, drive, int(g));
-    record.largest_force = std::max(record.largest_force, s.actuator[g].lpNorm<Eigen::Infinity>());
+    state.record.actuator_force =
+        std::max(state.record.actuator_force, s.actuator[g].lpNorm<Eigen::Infinity>());
     Vector3d force = s.actuator[g], moment = arm.cross(s.actuator[g]);
     for (auto k = size_t(body.first); !pad.released && k < size_t(body.last); ++k) {
       force += s.force[k];
@@ -174,7 +175,8 @@ void GripperRig::free_velocities(State& state, const RigDrive& drive, double dt,
     next = {.inverse_mass = 1 / mass, .inverse_inertia = 1 / inertia, .centre = pad.centre, .arm = arm};
     next.velocity = damped.keep * pad.velocity + damped.gain / mass * force;
     next.angular_velocity = damped.keep * pad.angular_velocity + damped.gain / inertia * moment;
-    s.stop[g] = stop_.stop({normal, pad.angular_velocity, inertia, dt, damped.gain}, next.angular_velocity);
+    s.stop[g] = stop_.stop({normal, pad.angular_velocity, inertia, std::max(h, state.dt), damped.gain},
+                           next.angular_velocity);
     s.free_v[g] = 0.5 * (pad.velocity + next.velocity);
     s.free_w[g] = 0.5 * (pad.angular_velocity + next.angular_velocity);
   }
@@ -182,8 +184,9 @@ void GripperRig::free_velocities(State& state, const RigDrive& drive, double dt,
 
 /// Nodes of a released pad move on their own. `kick_nodes` has damped their velocities already, as of any
 /// node.
-void GripperRig::kick_released(State& state, const Pad& body, double dt, double alpha, RigScratch& s) const {
-  const Damped damped(dt, alpha);
+void GripperRig::kick_released(State& state, const Pad& body, double alpha, RigScratch& s) const {
+  const double h = state.kick_time();
+  const Damped damped(h, alpha);
   double damping = 0;
   for (auto k = size_t(body.first); k < size_t(body.last); ++k) {
     const auto n = size_t(tied_[k]);
@@ -198,25 +201,26 @@ void GripperRig::kick_released(State& state, const Pad& body, double dt, double 
     set(state.v, n, v_new);
     set(state.w, n, w_new);
   }
-  book(state, Book::damping, -dt * alpha * damping);
+  book(state, Book::damping, -h * alpha * damping);
 }
 
 /// Takes over the velocities that meet the constraints; books work; gives tied nodes their mean velocities.
-void GripperRig::book_pad(State& state, size_t g, double dt, double alpha, RigScratch& s) const {
+void GripperRig::book_pad(State& state, size_t g, double alpha, RigScratch& s) const {
+  const double h = state.kick_time();
   const Pad& body = pads_[g];
   PadState& pad = state.pads[g];
   const LinkBody& next = s.links.bodies[g];
   const Vector3d mean_v = 0.5 * (pad.velocity + next.velocity);
   const Vector3d mean_w = 0.5 * (pad.angular_velocity + next.angular_velocity);
   s.joint_v[g] = mean_v + mean_w.cross(next.arm);
-  book(state, Book::actuator, dt * s.actuator[g].dot(s.joint_v[g]));
-  book(state, Book::stop, dt * s.stop[g].dot(mean_w));
+  book(state, Book::actuator, h * s.actuator[g].dot(s.joint_v[g]));
+  book(state, Book::stop, h * s.stop[g].dot(mean_w));
   book(state, Book::damping,
-       -dt * alpha *
+       -h * alpha *
            (body.mass_of(pad) * s.free_v[g].dot(mean_v) + body.inertia_of(pad) * s.free_w[g].dot(mean_w)));
   pad.velocity = next.velocity;
   pad.angular_velocity = next.angular_velocity;
-  if (pad.released) return kick_released(state, body, dt, alpha, s);
+  if (pad.released) return kick_released(state, body, alpha, s);
   const Eigen::Matrix3d turn = pad.rotation.toRotationMatrix();
   for (auto k = size_t(body.first); k < size_t(body.last); ++k) {
     s.mean_v[k] = mean_v + mean_w.cross(turn * nodes_[k].offset);
@@ -224,18 +228,18 @@ void GripperRig::book_pad(State& state, size_t g, double dt, double alpha, RigSc
   }
 }
 
-void GripperRig::kick(State& state, const RigDrive& drive, double dt, double alpha, RigScratch& s,
-                      RigRecord& record) const {
+void GripperRig::kick(State& state, const RigDrive& drive, double alpha, RigScratch& s) const {
   let_go(state, drive);
-  free_velocities(state, drive, dt, alpha, s, record);
-  const LinkSystem::Outcome links = links_.meet(dt, s.links);
-  record.largest_link_error = std::max(record.largest_link_error, links.error);
-  record.converged = record.converged && links.converged;
-  for (size_t g = 0; g < pads_.size(); ++g) book_pad(state, g, dt, alpha, s);
+  free_velocities(state, drive, alpha, s);
+  const LinkSystem::Outcome links = links_.meet(state.dt, s.links);
+  state.record.link_error = std::max(state.record.link_error, links.error);
+  s.converged = s.converged && links.converged;
+  for (size_t g = 0; g < pads_.size(); ++g) book_pad(state, g, alpha, s);
   book(state, Book::interlink, links_.work(s.links, s.joint_v));
 }
 
-void GripperRig::drift(State& state, double dt) const {
+void GripperRig::drift(State& state) const {
+  const double dt = state.dt;
   for (size_t g = 0; g < pads_.size(); ++g) {
     PadState& pad = state.pads[g];
     pad.centre += dt * pad.velocity;

@@ -18,13 +18,6 @@
 
 namespace drapeplan {
 
-/// What the rig measures of itself over a run.
-struct RigRecord {
-  double largest_force = 0;       ///< of an actuator [N]
-  double largest_link_error = 0;  ///< [m]
-  bool converged = true;          ///< every step met the constraints
-};
-
 /// Scratch of one run: forces on tied nodes, free and mean velocities, the constraint system.
 struct RigScratch {
   std::vector<Eigen::Vector3d> force, moment;   ///< in: on tied nodes and their directors [N], [N m]
@@ -35,6 +28,7 @@ struct RigScratch {
   std::vector<Eigen::Vector3d> stop, joint_v;   ///< moments of stops [N m]; mean velocities of joints
   std::vector<Eigen::Vector3d> actuator;        ///< forces [N]
   LinkScratch links;
+  bool converged = true;  ///< every step so far met the constraints
 };
 
 /// The schedule as the simulation plays it.
@@ -65,12 +59,14 @@ class GripperRig {
   [[nodiscard]] RigScratch scratch() const;
 
   /// One step for the pads: from nodal forces to pad velocities at t + dt/2 that meet all constraints at t +
-  /// dt. Books the work of damping (rate alpha), actuators, interlinks and stops into state.work.
-  void kick(State& state, const RigDrive& drive, double dt, double alpha, RigScratch& scratch,
-            RigRecord& record) const;
+  /// dt; before it, pads whose suction has ended let go of their nodes. Books the work of damping (rate
+  /// alpha), actuators, interlinks, stops and releases into state.work, and the largest actuator force and
+  /// link error into state.record. Needs what kick_nodes has done to the velocities of tied nodes: damping
+  /// alone.
+  void kick(State& state, const RigDrive& drive, double alpha, RigScratch& scratch) const;
 
   /// Moves pads to t + dt and their nodes with them.
-  void drift(State& state, double dt) const;
+  void drift(State& state) const;
 
   [[nodiscard]] double kinetic_energy(const State& state) const;
   [[nodiscard]] Eigen::Vector3d joint(const PadState& pad) const {
@@ -96,10 +92,9 @@ class GripperRig {
   };
 
   void let_go(State& state, const RigDrive& drive) const;
-  void free_velocities(State& state, const RigDrive& drive, double dt, double alpha, RigScratch& scratch,
-                       RigRecord& record) const;
-  void book_pad(State& state, size_t g, double dt, double alpha, RigScratch& scratch) const;
-  void kick_released(State& state, const Pad& body, double dt, double alpha, RigScratch& scratch) const;
+  void free_velocities(State& state, const RigDrive& drive, double alpha, RigScratch& scratch) const;
+  void book_pad(State& state, size_t g, double alpha, RigScratch& scratch) const;
+  void kick_released(State& state, const Pad& body, double alpha, RigScratch& scratch) const;
   [[nodiscard]] double kinetic_energy(const State& state, size_t g) const;
 
   RigOptions rig_;

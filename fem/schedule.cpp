@@ -69,6 +69,20 @@ double largest_speed(const std::vector<std::vector<AnyKnot>>& paths) {
   return largest;
 }
 
+/// Time of the last knot that differs from the one before it [s].
+template <class AnyKnot>
+double last_change(const std::vector<std::vector<AnyKnot>>& paths) {
+  double last = 0;
+  for (const auto& path : paths) {
+    for (size_t k = path.size(); k-- > 1;) {
+      if (place(path[k]) == place(path[k - 1])) continue;
+      last = std::max(last, path[k].time);
+      break;
+    }
+  }
+  return last;
+}
+
 }  // namespace
 
 Command Schedule::command(int gripper, double t) const {
@@ -89,6 +103,12 @@ double Schedule::duration() const {
   for (const auto& path : paths) last = std::max(last, path.back().time);
   for (const auto& path : plane_paths) last = std::max(last, path.back().time);
   return last + blend_time;
+}
+
+double Schedule::last_motion() const {
+  double last = std::max(last_change(paths), last_change(plane_paths)) + blend_time;
+  for (const auto& time : release) last = std::max(last, time.value_or(0));
+  return last;
 }
 
 double Schedule::largest_velocity() const {

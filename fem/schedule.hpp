@@ -42,8 +42,10 @@ struct Schedule {
   [[nodiscard]] Command command(int gripper, double t) const;
   /// True if gripper g holds nothing any more at time t [s].
   [[nodiscard]] bool released(int gripper, double t) const;
-  /// Time of the last movement [s].
+  /// Time of the last knot, and the blend after it [s].
   [[nodiscard]] double duration() const;
+  /// When the last commanded motion or release ends; then all joints rest [s].
+  [[nodiscard]] double last_motion() const;
   /// Largest speed over all grippers, vertical or in-plane [m/s].
   [[nodiscard]] double largest_velocity() const;
 };
