@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -11,37 +10,46 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kServoDamping = 1;  // damping ratio of a joint on its actuator: a servo does not ring
-constexpr double kRimSlack = 1e-9;   // nodes on the rim belong to the pad, whatever the round-off
-constexpr double kConstraintTolerance = 1e-12;  // of the grippers' spacing
-constexpr int kConstraintIterations = 20;
+constexpr double kServoDamping = 1;   // damping ratio of a joint on its actuator: a servo does not ring
+constexpr double kRimSlack = 1e-9;    // nodes on the rim belong to the pad, whatever the round-off
+constexpr double kStartSlack = 1e-6;  // [m]; a schedule is rounded to it
 
 std::string gripper_name(const RigOptions& rig, int index) {
   return "gripper [" + std::to_string(index % rig.columns + 1) + ", " +
          std::to_string(index / rig.columns + 1) + "]";
 }
 
-/// v turned by the rotation vector `turn` (exponential map).
-Vector3d turned(const Vector3d& turn, const Vector3d& v) {
-  const double angle = turn.norm();
-  if (angle == 0) return v;
-  return Eigen::AngleAxisd(angle, turn / angle) * v;
-}
-
 void book(State& state, Book entry, double work) {
   state.work[size_t(entry)] += work;
 }
+
+Vector3d get(const VectorField& field, size_t n) {
+  return {field.x[n], field.y[n], field.z[n]};
+}
+
+void set(VectorField& field, size_t n, const Vector3d& value) {
+  field.x[n] = value.x(), field.y[n] = value.y(), field.z[n] = value.z();
+}
+
+/// Mass damping, centred: v+ = keep v- + gain force / mass.
+struct Damped {
+  double keep, gain;
+  Damped(double dt, double alpha)
+      : keep((1 - 0.5 * alpha * dt) / (1 + 0.5 * alpha * dt)), gain(dt / (1 + 0.5 * alpha * dt)) {}
+};
 
 }  // namespace
 
 GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>& rest,
                        const std::vector<double>& mass, const std::vector<double>& inertia,
                        std::vector<Eigen::Vector2d> place, double turn)
-    : rig_(rig), place_(std::move(place)), turn_(turn) {
+    : rig_(rig), links_(rig, place), stop_(rig, turn), place_(std::move(place)), turn_(turn) {
   std::vector<char> taken(rest.size(), 0);
   for (int g = 0; g < rig.count(); ++g) {
-    Pad pad{.mass = rig.pad_mass, .inertia = 0, .first = int(tied_.size()), .last = 0};
-    double spread = 0;
+    Pad pad;
+    pad.bare_mass = pad.mass = rig.pad_mass;
+    pad.bare_inertia = pad.inertia = 0.5 * rig.pad_mass * rig.pad_radius * rig.pad_radius;
+    pad.first = int(tied_.size());
     for (size_t n = 0; n < rest.size(); ++n) {
       const Eigen::Vector2d offset = rest[n] - rig.place(g);
       if (offset.norm() > rig.pad_radius * (1 + kRimSlack)) continue;
@@ -49,62 +57,50 @@ GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>
         throw std::invalid_argument(gripper_name(rig, g) + " shares a ply node with another gripper");
       taken[n] = 1;
       tied_.push_back(int(n));
-      offset_.emplace_back(offset.x(), offset.y(), 0);
+      nodes_.push_back({{offset.x(), offset.y(), 0}, mass[n], inertia[n]});
       pad.mass += mass[n];
-      spread += mass[n] * offset.squaredNorm() + inertia[n];
+      pad.inertia += mass[n] * offset.squaredNorm() + inertia[n];
     }
     pad.last = int(tied_.size());
     if (pad.last == pad.first) {
       throw std::invalid_argument(gripper_name(rig, g) + " has no ply node under its pad: refine the mesh");
     }
-    pad.inertia = std::max(0.5 * pad.mass * rig.pad_radius * rig.pad_radius, spread);
     pads_.push_back(pad);
-  }
-  for (const auto& [i, j] : interlinks(rig))
-    rows_.push_back({.i = i, .j = j, .axis = -1, .value = rig.spacing});
-  if (rig.fixed) {
-    const int g = ((*rig.fixed)[1] - 1) * rig.columns + (*rig.fixed)[0] - 1;
-    for (int axis = 0; axis < 2; ++axis)
-      rows_.push_back({.i = g, .j = -1, .axis = axis, .value = place_[size_t(g)][axis]});
-  }
-  // Rows by the last gripper that they touch: their couplings then stay near the diagonal.
-  std::stable_sort(rows_.begin(), rows_.end(),
-                   [](const Row& a, const Row& b) { return std::max(a.i, a.j) < std::max(b.i, b.j); });
-  size_t size = 0;
-  for (int k = 0; k < int(rows_.size()); ++k) {
-    int first = k;
-    for (int l = 0; l <= k; ++l) {
-      for (const int a : {rows_[size_t(k)].i, rows_[size_t(k)].j}) {
-        for (const int b : {rows_[size_t(l)].i, rows_[size_t(l)].j}) {
-          if (a < 0 || a != b) continue;
-          const bool same = (a == rows_[size_t(k)].i) == (b == rows_[size_t(l)].i);
-          couplings_.push_back({k, l, a, same ? 1.0 : -1.0});
-          first = std::min(first, l);
-        }
-      }
-    }
-    envelope_.push_back(first);
-    start_.push_back(size - size_t(first));
-    size += size_t(k - first + 1);
   }
 }
 
 RigScratch GripperRig::scratch() const {
   RigScratch s;
-  s.force.resize(tied_.size());
-  s.moment.resize(tied_.size());
-  s.mean_v.resize(tied_.size());
-  s.mean_w.resize(tied_.size());
-  s.next.resize(pads_.size());
-  s.arm.resize(pads_.size());
-  s.next_arm.resize(pads_.size());
-  for (auto* list : {&s.free_mean_v, &s.free_mean_w, &s.stop, &s.joint_v}) list->resize(pads_.size());
-  s.actuator.resize(pads_.size());
-  s.direction.resize(rows_.size());
-  s.residual.resize(rows_.size());
-  s.impulse.resize(rows_.size());
-  if (!rows_.empty()) s.factor.resize(start_.back() + rows_.size());
+  for (auto* list : {&s.force, &s.moment, &s.mean_v, &s.mean_w}) list->resize(tied_.size());
+  for (auto* list : {&s.free_v, &s.free_w, &s.stop, &s.joint_v, &s.actuator}) list->resize(pads_.size());
+  s.links = links_.scratch();
   return s;
+}
+
+void GripperRig::check(const Schedule& schedule) const {
+  if (int(schedule.paths.size()) != rig_.count()) {
+    throw std::invalid_argument("the schedule has " + std::to_string(schedule.paths.size()) +
+                                " grippers, the rig " + std::to_string(rig_.count()));
+  }
+  for (const auto& path : schedule.paths) {
+    if (path.front().z != schedule.paths.front().front().z)
+      throw std::invalid_argument("joints must start at one height");
+  }
+  if (rig_.driven == Driven::z) {
+    if (!schedule.plane_paths.empty())
+      throw std::invalid_argument("the schedule has in-plane paths, the rig drives its joints in z only");
+    return;
+  }
+  if (schedule.plane_paths.size() != schedule.paths.size())
+    throw std::invalid_argument("the rig drives its joints in x, y and z: the schedule needs in-plane paths");
+  for (int g = 0; g < rig_.count(); ++g) {
+    const Eigen::Vector2d apart = schedule.plane_paths[size_t(g)].front().xy - place_[size_t(g)];
+    if (apart.norm() <= kStartSlack) continue;
+    throw std::invalid_argument("the in-plane path of " + gripper_name(rig_, g) + " starts " +
+                                std::to_string(1e3 * apart.norm()) + " mm off its joint's place, (" +
+                                std::to_string(1e3 * place_[size_t(g)].x()) + ", " +
+                                std::to_string(1e3 * place_[size_t(g)].y()) + ") mm");
+  }
 }
 
 void GripperRig::place(State& state, double z) const {
@@ -117,178 +113,129 @@ void GripperRig::place(State& state, double z) const {
   }
 }
 
-double GripperRig::actuator_force(const State& state, const RigDrive& drive, int g) const {
+Vector3d GripperRig::actuator_force(const State& state, const RigDrive& drive, int g) const {
   const PadState& pad = state.pads[size_t(g)];
-  const Vector3d arm = joint(pad) - pad.centre;
+  const Vector3d place = joint(pad), speed = pad.velocity + pad.angular_velocity.cross(place - pad.centre);
   const Command command = drive.schedule->command(g, state.time * drive.time_scaling);
-  const double damping = 2 * kServoDamping * std::sqrt(rig_.actuator_stiffness * pads_[size_t(g)].mass);
-  const double speed = (pad.velocity + pad.angular_velocity.cross(arm)).z();
-  const double force = rig_.actuator_stiffness * (command.z - pad.centre.z() - arm.z()) +
-                       damping * (command.vz * drive.time_scaling - speed);
-  return std::clamp(force, -rig_.actuator_force_limit, rig_.actuator_force_limit);
+  const double mass = pads_[size_t(g)].mass_of(pad);
+  const double damping = 2 * kServoDamping * std::sqrt(rig_.actuator_stiffness * mass);
+  const auto along = [&](int axis, double to, double rate) {
+    const double force =
+        rig_.actuator_stiffness * (to - place[axis]) + damping * (rate * drive.time_scaling - speed[axis]);
+    return std::clamp(force, -rig_.actuator_force_limit, rig_.actuator_force_limit);
+  };
+  Vector3d force(0, 0, along(2, command.z, command.vz));
+  if (rig_.driven == Driven::xyz) {
+    for (int axis = 0; axis < 2; ++axis) force[axis] = along(axis, command.xy[axis], command.v_plane[axis]);
+  }
+  return force;
+}
+
+/// Pads whose suction has ended at t lose their nodes. Velocities are continuous; kinetic energy is not
+/// quite, since a pad's inertia counts that of its nodes about its normal for all axes: the difference is
+/// booked.
+void GripperRig::let_go(State& state, const RigDrive& drive) const {
+  for (size_t g = 0; g < pads_.size(); ++g) {
+    PadState& pad = state.pads[g];
+    if (pad.released || !drive.schedule->released(int(g), state.time * drive.time_scaling)) continue;
+    const Pad& body = pads_[g];
+    const Eigen::Matrix3d turn = pad.rotation.toRotationMatrix();
+    double change = -kinetic_energy(state, g);
+    pad.released = true;
+    change += 0.5 * (body.bare_mass * pad.velocity.squaredNorm() +
+                     body.bare_inertia * pad.angular_velocity.squaredNorm());
+    for (auto k = size_t(body.first); k < size_t(body.last); ++k) {
+      const Vector3d v = pad.velocity + pad.angular_velocity.cross(turn * nodes_[k].offset);
+      const Vector3d w = pad.angular_velocity.cross(turn.col(2));
+      change += 0.5 * (nodes_[k].mass * v.squaredNorm() + nodes_[k].inertia * w.squaredNorm());
+    }
+    book(state, Book::release, change);
+  }
 }
 
 /// Velocities at t + dt/2 as if there were no constraints.
 void GripperRig::free_velocities(State& state, const RigDrive& drive, double alpha, RigScratch& s) const {
   const double h = state.kick_time();
-  const double keep = (1 - 0.5 * alpha * h) / (1 + 0.5 * alpha * h), gain = h / (1 + 0.5 * alpha * h);
+  const Damped damped(h, alpha);
   for (size_t g = 0; g < pads_.size(); ++g) {
     const Pad& body = pads_[g];
     const PadState& pad = state.pads[g];
     const Eigen::Matrix3d turn = pad.rotation.toRotationMatrix();
-    const Vector3d normal = turn.col(2);
-    Vector3d force = Vector3d::Zero(), moment = Vector3d::Zero();
-    for (auto k = size_t(body.first); k < size_t(body.last); ++k) {
+    const Vector3d normal = turn.col(2), arm = rig_.joint_offset * normal;
+    const double mass = body.mass_of(pad), inertia = body.inertia_of(pad);
+    s.actuator[g] = actuator_force(state, drive, int(g));
+    state.record.actuator_force =
+        std::max(state.record.actuator_force, s.actuator[g].lpNorm<Eigen::Infinity>());
+    Vector3d force = s.actuator[g], moment = arm.cross(s.actuator[g]);
+    for (auto k = size_t(body.first); !pad.released && k < size_t(body.last); ++k) {
       force += s.force[k];
-      moment += (turn * offset_[k]).cross(s.force[k]) + normal.cross(s.moment[k]);
+      moment += (turn * nodes_[k].offset).cross(s.force[k]) + normal.cross(s.moment[k]);
     }
-    s.arm[g] = rig_.joint_offset * normal;
-    const double push = actuator_force(state, drive, int(g));
-    state.record.actuator_force = std::max(state.record.actuator_force, std::abs(push));
-    s.actuator[g] = push;
-    force.z() += push;
-    moment += s.arm[g].cross(Vector3d(0, 0, push));
-    s.stop[g] = stop_moment(normal);
-    moment += s.stop[g];
-    s.next[g] = pad;
-    s.next[g].velocity = keep * pad.velocity + gain / body.mass * force;
-    s.next[g].angular_velocity = keep * pad.angular_velocity + gain / body.inertia * moment;
-    s.free_mean_v[g] = 0.5 * (pad.velocity + s.next[g].velocity);
-    s.free_mean_w[g] = 0.5 * (pad.angular_velocity + s.next[g].angular_velocity);
+    LinkBody& next = s.links.bodies[g];
+    next = {.inverse_mass = 1 / mass, .inverse_inertia = 1 / inertia, .centre = pad.centre, .arm = arm};
+    next.velocity = damped.keep * pad.velocity + damped.gain / mass * force;
+    next.angular_velocity = damped.keep * pad.angular_velocity + damped.gain / inertia * moment;
+    s.stop[g] = stop_.stop({normal, pad.angular_velocity, inertia, std::max(h, state.dt), damped.gain},
+                           next.angular_velocity);
+    s.free_v[g] = 0.5 * (pad.velocity + next.velocity);
+    s.free_w[g] = 0.5 * (pad.angular_velocity + next.angular_velocity);
   }
 }
 
-/// Moment that turns a pad back from its tilt limit, as stiff as its actuator at the pad's rim.
-Vector3d GripperRig::stop_moment(const Vector3d& normal) const {
-  if (normal.z() >= std::cos(rig_.tilt_limit)) return Vector3d::Zero();
-  const double beyond = std::acos(std::clamp(normal.z(), -1.0, 1.0)) - rig_.tilt_limit;
-  const Vector3d axis = Vector3d::UnitZ().cross(normal).normalized();
-  return -(rig_.actuator_stiffness * rig_.pad_radius * rig_.pad_radius * beyond) * axis;
+/// Nodes of a released pad move on their own. `kick_nodes` has damped their velocities already, as of any
+/// node.
+void GripperRig::kick_released(State& state, const Pad& body, double alpha, RigScratch& s) const {
+  const double h = state.kick_time();
+  const Damped damped(h, alpha);
+  double damping = 0;
+  for (auto k = size_t(body.first); k < size_t(body.last); ++k) {
+    const auto n = size_t(tied_[k]);
+    const Tied& node = nodes_[k];
+    const Vector3d d = get(state.d, n), v = get(state.v, n), w = get(state.w, n);
+    const Vector3d moment = s.moment[k] - s.moment[k].dot(d) * d;
+    const Vector3d v_new = v + damped.gain / node.mass * s.force[k];
+    const Vector3d w_new = w + damped.gain / node.inertia * moment;
+    s.mean_v[k] = 0.5 * (v / damped.keep + v_new);
+    s.mean_w[k] = 0.5 * (w / damped.keep + w_new);
+    damping += node.mass * s.mean_v[k].squaredNorm() + node.inertia * s.mean_w[k].squaredNorm();
+    set(state.v, n, v_new);
+    set(state.w, n, w_new);
+  }
+  book(state, Book::damping, -h * alpha * damping);
 }
 
-/// Lengths and coordinates at t + dt less what they should be, for the velocities in s.next. Returns the
-/// largest.
-double GripperRig::residuals(const State& state, RigScratch& s) const {
-  const double dt = state.dt;
-  for (size_t g = 0; g < pads_.size(); ++g) {
-    s.next[g].centre = state.pads[g].centre + dt * s.next[g].velocity;
-    s.next_arm[g] = turned(dt * s.next[g].angular_velocity, s.arm[g]);
+/// Takes over the velocities that meet the constraints; books work; gives tied nodes their mean velocities.
+void GripperRig::book_pad(State& state, size_t g, double alpha, RigScratch& s) const {
+  const double h = state.kick_time();
+  const Pad& body = pads_[g];
+  PadState& pad = state.pads[g];
+  const LinkBody& next = s.links.bodies[g];
+  const Vector3d mean_v = 0.5 * (pad.velocity + next.velocity);
+  const Vector3d mean_w = 0.5 * (pad.angular_velocity + next.angular_velocity);
+  s.joint_v[g] = mean_v + mean_w.cross(next.arm);
+  book(state, Book::actuator, h * s.actuator[g].dot(s.joint_v[g]));
+  book(state, Book::stop, h * s.stop[g].dot(mean_w));
+  book(state, Book::damping,
+       -h * alpha *
+           (body.mass_of(pad) * s.free_v[g].dot(mean_v) + body.inertia_of(pad) * s.free_w[g].dot(mean_w)));
+  pad.velocity = next.velocity;
+  pad.angular_velocity = next.angular_velocity;
+  if (pad.released) return kick_released(state, body, alpha, s);
+  const Eigen::Matrix3d turn = pad.rotation.toRotationMatrix();
+  for (auto k = size_t(body.first); k < size_t(body.last); ++k) {
+    s.mean_v[k] = mean_v + mean_w.cross(turn * nodes_[k].offset);
+    s.mean_w[k] = mean_w.cross(turn.col(2));
   }
-  double largest = 0;
-  for (size_t k = 0; k < rows_.size(); ++k) {
-    const Row& row = rows_[k];
-    const Vector3d a = s.next[size_t(row.i)].centre + s.next_arm[size_t(row.i)];
-    if (row.j >= 0) {
-      const Vector3d b = s.next[size_t(row.j)].centre + s.next_arm[size_t(row.j)];
-      s.residual[k] = (a - b).norm() - row.value;
-    } else {
-      s.residual[k] = a[row.axis] - row.value;
-    }
-    largest = std::max(largest, std::abs(s.residual[k]));
-    if (!std::isfinite(s.residual[k])) return s.residual[k];
-  }
-  return largest;
-}
-
-/// Cholesky factor of G M^-1 G^T within its envelope.
-void GripperRig::factorise(RigScratch& s) const {
-  std::fill(s.factor.begin(), s.factor.end(), 0.0);
-  for (const Coupling& c : couplings_) {
-    const Pad& body = pads_[size_t(c.pad)];
-    const Vector3d& uk = s.direction[size_t(c.k)];
-    const Vector3d& ul = s.direction[size_t(c.l)];
-    const Vector3d& arm = s.arm[size_t(c.pad)];
-    s.factor[start_[size_t(c.k)] + size_t(c.l)] +=
-        c.sign * (uk.dot(ul) / body.mass + arm.cross(uk).dot(arm.cross(ul)) / body.inertia);
-  }
-  for (size_t k = 0; k < rows_.size(); ++k) {
-    for (auto l = size_t(envelope_[k]); l <= k; ++l) {
-      double sum = s.factor[start_[k] + l];
-      for (size_t m = size_t(std::max(envelope_[k], envelope_[l])); m < l; ++m) {
-        sum -= s.factor[start_[k] + m] * s.factor[start_[l] + m];
-      }
-      s.factor[start_[k] + l] = l == k ? std::sqrt(sum) : sum / s.factor[start_[l] + l];
-    }
-  }
-}
-
-/// Newton's method for the impulses that meet all rows at t + dt; the matrix stays that of t.
-void GripperRig::meet_constraints(State& state, RigScratch& s) const {
-  for (size_t k = 0; k < rows_.size(); ++k) {
-    const Row& row = rows_[k];
-    const auto i = size_t(row.i);
-    s.direction[k] = row.j < 0 ? Vector3d(Vector3d::Unit(row.axis))
-                               : Vector3d((state.pads[i].centre + s.arm[i] -
-                                           state.pads[size_t(row.j)].centre - s.arm[size_t(row.j)])
-                                              .normalized());
-    s.impulse[k] = 0;
-  }
-  factorise(s);
-  double error = 0;
-  const double round_off = 4 * std::numeric_limits<double>::epsilon() * state.pads.front().centre.norm();
-  for (int iteration = 0; iteration < kConstraintIterations; ++iteration) {
-    error = residuals(state, s);
-    if (error <= kConstraintTolerance * rig_.spacing + round_off) {
-      state.record.link_error = std::max(state.record.link_error, error);
-      return;
-    }
-    for (size_t k = 0; k < rows_.size(); ++k) {  // forward
-      for (auto l = size_t(envelope_[k]); l < k; ++l)
-        s.residual[k] -= s.factor[start_[k] + l] * s.residual[l];
-      s.residual[k] /= s.factor[start_[k] + k];
-    }
-    for (size_t k = rows_.size(); k-- > 0;) {  // backward
-      s.residual[k] /= s.factor[start_[k] + k];
-      for (auto l = size_t(envelope_[k]); l < k; ++l)
-        s.residual[l] -= s.factor[start_[k] + l] * s.residual[k];
-    }
-    for (size_t k = 0; k < rows_.size(); ++k) {
-      const double impulse = -s.residual[k] / state.dt;
-      s.impulse[k] += impulse;
-      push(s, rows_[k].i, impulse * s.direction[k]);
-      if (rows_[k].j >= 0) push(s, rows_[k].j, -impulse * s.direction[k]);
-    }
-  }
-  state.record.link_error = std::max(state.record.link_error, error);
-  s.converged = false;
-}
-
-/// Impulse [N s] on the joint of gripper g.
-void GripperRig::push(RigScratch& s, int g, const Vector3d& impulse) const {
-  s.next[size_t(g)].velocity += impulse / pads_[size_t(g)].mass;
-  s.next[size_t(g)].angular_velocity += s.arm[size_t(g)].cross(impulse) / pads_[size_t(g)].inertia;
 }
 
 void GripperRig::kick(State& state, const RigDrive& drive, double alpha, RigScratch& s) const {
+  let_go(state, drive);
   free_velocities(state, drive, alpha, s);
-  meet_constraints(state, s);
-  const double h = state.kick_time();
-  for (size_t g = 0; g < pads_.size(); ++g) {
-    PadState& pad = state.pads[g];
-    const Vector3d mean_v = 0.5 * (pad.velocity + s.next[g].velocity);
-    const Vector3d mean_w = 0.5 * (pad.angular_velocity + s.next[g].angular_velocity);
-    const Vector3d joint_v = mean_v + mean_w.cross(s.arm[g]);
-    book(state, Book::actuator, h * s.actuator[g] * joint_v.z());
-    book(state, Book::stop, h * s.stop[g].dot(mean_w));
-    book(
-        state, Book::damping,
-        -h * alpha *
-            (pads_[g].mass * s.free_mean_v[g].dot(mean_v) + pads_[g].inertia * s.free_mean_w[g].dot(mean_w)));
-    const Eigen::Matrix3d turn = pad.rotation.toRotationMatrix();
-    for (auto k = size_t(pads_[g].first); k < size_t(pads_[g].last); ++k) {
-      s.mean_v[k] = mean_v + mean_w.cross(turn * offset_[k]);
-      s.mean_w[k] = mean_w.cross(turn.col(2));
-    }
-    s.joint_v[g] = joint_v;
-    pad.velocity = s.next[g].velocity;
-    pad.angular_velocity = s.next[g].angular_velocity;
-  }
-  double work = 0;
-  for (size_t k = 0; k < rows_.size(); ++k) {
-    const Vector3d other = rows_[k].j < 0 ? Vector3d::Zero() : s.joint_v[size_t(rows_[k].j)];
-    work += s.impulse[k] * s.direction[k].dot(s.joint_v[size_t(rows_[k].i)] - other);
-  }
-  book(state, Book::interlink, work);
+  const LinkSystem::Outcome links = links_.meet(state.dt, s.links);
+  state.record.link_error = std::max(state.record.link_error, links.error);
+  s.converged = s.converged && links.converged;
+  for (size_t g = 0; g < pads_.size(); ++g) book_pad(state, g, alpha, s);
+  book(state, Book::interlink, links_.work(s.links, s.joint_v));
 }
 
 void GripperRig::drift(State& state) const {
@@ -300,26 +247,35 @@ void GripperRig::drift(State& state) const {
     const double angle = turn.norm();
     if (angle > 0)
       pad.rotation = (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * pad.rotation).normalized();
+    if (pad.released) continue;  // drift_nodes has moved its nodes
     const Eigen::Matrix3d rotation = pad.rotation.toRotationMatrix();
     for (auto k = size_t(pads_[g].first); k < size_t(pads_[g].last); ++k) {
       const auto n = size_t(tied_[k]);
-      const Vector3d x = pad.centre + rotation * offset_[k];
-      const Vector3d v = pad.velocity + pad.angular_velocity.cross(rotation * offset_[k]);
-      const Vector3d d = rotation.col(2), w = pad.angular_velocity.cross(d);
-      state.x.x[n] = x.x(), state.x.y[n] = x.y(), state.x.z[n] = x.z();
-      state.v.x[n] = v.x(), state.v.y[n] = v.y(), state.v.z[n] = v.z();
-      state.d.x[n] = d.x(), state.d.y[n] = d.y(), state.d.z[n] = d.z();
-      state.w.x[n] = w.x(), state.w.y[n] = w.y(), state.w.z[n] = w.z();
+      const Vector3d offset = rotation * nodes_[k].offset, d = rotation.col(2);
+      set(state.x, n, pad.centre + offset);
+      set(state.v, n, pad.velocity + pad.angular_velocity.cross(offset));
+      set(state.d, n, d);
+      set(state.w, n, pad.angular_velocity.cross(d));
     }
   }
 }
 
+double GripperRig::kinetic_energy(const State& state, size_t g) const {
+  const PadState& pad = state.pads[g];
+  const Pad& body = pads_[g];
+  double twice = body.mass_of(pad) * pad.velocity.squaredNorm() +
+                 body.inertia_of(pad) * pad.angular_velocity.squaredNorm();
+  for (auto k = size_t(body.first); pad.released && k < size_t(body.last); ++k) {
+    const auto n = size_t(tied_[k]);
+    twice +=
+        nodes_[k].mass * get(state.v, n).squaredNorm() + nodes_[k].inertia * get(state.w, n).squaredNorm();
+  }
+  return 0.5 * twice;
+}
+
 double GripperRig::kinetic_energy(const State& state) const {
   double sum = 0;
-  for (size_t g = 0; g < pads_.size(); ++g) {
-    sum += 0.5 * (pads_[g].mass * state.pads[g].velocity.squaredNorm() +
-                  pads_[g].inertia * state.pads[g].angular_velocity.squaredNorm());
-  }
+  for (size_t g = 0; g < pads_.size(); ++g) sum += kinetic_energy(state, g);
   return sum;
 }
 
@@ -327,7 +283,7 @@ void GripperRig::snapshot(const State& state, const RigDrive& drive, Snapshot& o
   for (int g = 0; g < int(pads_.size()); ++g) {
     out.pad.push_back(state.pads[size_t(g)].centre);
     out.joint.push_back(joint(state.pads[size_t(g)]));
-    out.actuator_force.push_back(actuator_force(state, drive, g));
+    out.actuator_force.push_back(actuator_force(state, drive, g).z());
   }
 }
 

@@ -77,7 +77,10 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
       if (mass_[size_t(node)] == 0) throw std::invalid_argument("a node under a pad is clamped or pinned");
     }
     held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
-    if (std::sqrt(scene_.rig->actuator_stiffness / scene_.rig->pad_mass) * dt() > kServoStep) {
+    // The joint's mobility: of the pad's mass, and of its inertia through the arm.
+    const double arm = scene_.rig->joint_offset / scene_.rig->pad_radius;
+    const double mobility = (1 + 2 * arm * arm) / scene_.rig->pad_mass;
+    if (std::sqrt(scene_.rig->actuator_stiffness * mobility) * dt() > kServoStep) {
       throw std::invalid_argument(
           "the actuators are too stiff for the time step: lower grippers.actuator_stiffness or "
           "raise grippers.pad_mass");

@@ -21,7 +21,7 @@ Energies energies(const Model& model, const State& state) {
   e.friction = -work(Book::friction);
   e.contact = -work(Book::contact);
   e.damping = -work(Book::damping);
-  e.constraint = -work(Book::interlink) - work(Book::stop);
+  e.constraint = -work(Book::interlink) - work(Book::stop) - work(Book::release);
   return e;
 }
 

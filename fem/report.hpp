@@ -15,7 +15,7 @@ struct Energies {
   double friction = 0;       ///< taken by friction, its elastic part included
   double contact = 0;        ///< stored by normal contact
   double damping = 0;        ///< taken by mass damping
-  double constraint = 0;     ///< taken by interlinks, guides and tilt stops
+  double constraint = 0;     ///< taken by interlinks, guides, tilt stops and the release of pads
   double hourglass = 0;      ///< stored in hourglass modes; part of `internal`
   double largest = 0;        ///< largest magnitude that any entry reached
   double balance_error = 0;  ///< largest |balance| over the run / largest

@@ -9,6 +9,22 @@
 
 namespace drapeplan {
 
+/// Directions in which actuators drive the joints.
+enum class Driven {
+  z,    ///< x and y follow the ply, interlinks and the fixed joint
+  xyz,  ///< each direction by an actuator of its own; no interlinks, no fixed joint
+};
+
+/// Least and largest angle [rad] of a pad about the two in-plane axes of the ply's frame in the flat start
+/// (u: warp, v: weft; they stay in the world). With the pad's unit normal n = (n_u, n_v, n_z):
+///   about the warp  atan2(-n_v, n_z),  > 0: the normal leans towards -v (right-handed about +u)
+///   about the weft  atan2( n_u, n_z),  > 0: the normal leans towards +u (right-handed about +v)
+/// Both hold the flat start, so least <= 0 <= largest.
+struct RotationLimits {
+  Eigen::Vector2d about_warp{-0.5 * std::numbers::pi, 0.5 * std::numbers::pi};
+  Eigen::Vector2d about_weft{-0.5 * std::numbers::pi, 0.5 * std::numbers::pi};
+};
+
 /// Rectangular grid of grippers, centred on the ply. Gripper (i, j) of files counts from 1, i along the warp;
 /// its index is (j - 1) * columns + (i - 1).
 struct RigOptions {
@@ -19,12 +35,16 @@ struct RigOptions {
   double pad_mass = 0.1;                            ///< moving mass of one gripper [kg]
   double joint_offset = 0.005;                      ///< joint above the ply along the pad's normal [m]
   double tilt_limit = 60 * std::numbers::pi / 180;  ///< largest angle between pad normal and vertical [rad]
-  bool interlinks = true;                           ///< rigid bars between neighbouring joints
-  std::optional<std::array<int, 2>> fixed;          ///< gripper (i, j) whose joint is fixed in-plane
-  double actuator_stiffness = 1e4;                  ///< [N/m]
-  double actuator_force_limit = 50;                 ///< [N]
-  double max_velocity = 0.2;                        ///< of a joint, vertical [m/s]
-  double blend_time = 0.1;                          ///< over which a change of velocity is spread [s]
+  std::optional<RotationLimits> rotation_limits;    ///< beside the tilt limit
+  Driven driven = Driven::z;
+  bool interlinks = true;                   ///< rigid bars between neighbouring joints
+  std::optional<std::array<int, 2>> fixed;  ///< gripper (i, j) whose joint is fixed in-plane
+  double actuator_stiffness = 1e4;          ///< [N/m]
+  double actuator_force_limit = 50;         ///< [N]
+  double max_velocity = 0.2;                ///< of a joint, vertical or in-plane [m/s]
+  double blend_time = 0.1;                  ///< over which a change of velocity is spread [s]
+  /// From the end of the last stroke until all suction ends [s]; absent: the ply is held to the end.
+  std::optional<double> release_time;
 
   [[nodiscard]] int count() const { return columns * rows; }
   /// Place of gripper `index` in the ply frame (u, v) [m].

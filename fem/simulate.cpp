@@ -21,18 +21,9 @@ constexpr double kTimeSlack = 1e-12;  // of the duration: round-off of summed st
 /// Height of the flat ply at the start: all joints stand at the same height.
 double start_height(const Model& model, const RunRequest& request) {
   if (!model.rig()) return model.scene().start_height;
-  const RigOptions& rig = *model.scene().rig;
   if (!request.schedule) throw std::invalid_argument("simulate: a rig needs a schedule");
-  const Schedule& schedule = *request.schedule;
-  if (int(schedule.paths.size()) != rig.count()) {
-    throw std::invalid_argument("simulate: the schedule has " + std::to_string(schedule.paths.size()) +
-                                " grippers, the rig " + std::to_string(rig.count()));
-  }
-  const double z = schedule.paths.front().front().z;
-  for (const auto& path : schedule.paths) {
-    if (path.front().z != z) throw std::invalid_argument("simulate: joints must start at one height");
-  }
-  return z - rig.joint_offset;
+  model.rig()->check(*request.schedule);
+  return request.schedule->paths.front().front().z - model.scene().rig->joint_offset;
 }
 
 /// The mold is asked vertically: a flat ply above all heights is outside, whatever the slope.

@@ -36,6 +36,7 @@ std::uint64_t hash_state(const State& state, int node_count) {
     for (int k = 0; k < 4; ++k) hash.add(pad.rotation.coeffs()[k]);
     for (int k = 0; k < 3; ++k) hash.add(pad.velocity[k]);
     for (int k = 0; k < 3; ++k) hash.add(pad.angular_velocity[k]);
+    if (pad.released) hash.add(1.0);
   }
   for (const double work : state.work) hash.add(work);
   return hash.value();

@@ -11,8 +11,8 @@
 namespace drapeplan {
 
 /// Books of work, one entry each. See Energies for their meaning.
-enum class Book { internal, gravity, contact, friction, damping, actuator, interlink, stop, load };
-inline constexpr size_t kBooks = 9;
+enum class Book { internal, gravity, contact, friction, damping, actuator, interlink, stop, load, release };
+inline constexpr size_t kBooks = 10;
 
 /// A rigid pad: its centre on the ply's mid-surface, its orientation and its half-step velocities.
 struct PadState {
@@ -20,6 +20,7 @@ struct PadState {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity{0, 0, 0};          ///< at t - dt/2 [m/s]
   Eigen::Vector3d angular_velocity{0, 0, 0};  ///< at t - dt/2 [rad/s]
+  bool released = false;                      ///< its nodes move on their own
 };
 
 /// The worst that a run has seen so far, at the instants at which it is watched.

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <type_traits>
 
 #include "fem/hash.hpp"
 
@@ -40,6 +41,9 @@ void visit_pad(Pad& pad, const Visit& visit) {
   for (int k = 0; k < 4; ++k) visit(pad.rotation.coeffs()[k]);
   for (int k = 0; k < 3; ++k) visit(pad.velocity[k]);
   for (int k = 0; k < 3; ++k) visit(pad.angular_velocity[k]);
+  double released = pad.released ? 1 : 0;
+  visit(released);
+  if constexpr (!std::is_const_v<Pad>) pad.released = released != 0;
 }
 
 class Writer {

@@ -54,6 +54,17 @@ void check_mapping(const CaseFields& fields, CaseReader& reader) {
                   " outside the mold's extent");
 }
 
+void check_rotation_limits(const RigOptions& rig, CaseReader& reader) {
+  if (!rig.rotation_limits || !reader.good("/grippers/rotation_limits")) return;
+  const auto check = [&reader](const std::string& name, const Eigen::Vector2d& range) {
+    const std::string pointer = "/grippers/rotation_limits/" + name;
+    if (reader.good(pointer) && !(range[0] <= 0 && range[1] >= 0))
+      reader.fail(pointer, "excludes the flat start; allowed: least <= 0 deg <= largest");
+  };
+  check("about_warp", rig.rotation_limits->about_warp);
+  check("about_weft", rig.rotation_limits->about_weft);
+}
+
 void check_grippers(const CaseFields& fields, CaseReader& reader) {
   if (!fields.value.grippers || !reader.good("/grippers")) return;
   const RigOptions& rig = *fields.value.grippers;
@@ -68,6 +79,17 @@ void check_grippers(const CaseFields& fields, CaseReader& reader) {
   if (rig.count() > 1 && rig.spacing < 2 * rig.pad_radius) {
     reader.fail("/grippers/spacing", "the pads overlap; allowed: at least twice pad_radius, " +
                                          format_quantity(2 * rig.pad_radius, Dimension::length));
+  }
+  check_rotation_limits(rig, reader);
+  if (rig.driven == Driven::xyz) {
+    if (rig.interlinks)
+      reader.fail("/grippers/driven",
+                  "joints that are driven in x and y cannot have interlinks: set "
+                  "\"interlinks\": false, or \"driven\": \"z\"");
+    if (rig.fixed)
+      reader.fail("/grippers/driven",
+                  "joints that are driven in x and y cannot be fixed: leave out \"fixed\", "
+                  "or set \"driven\": \"z\"");
   }
   if (!rig.fixed) return;
   const auto [i, j] = *rig.fixed;

@@ -184,17 +184,37 @@ void visit_grippers(FieldVisitor& v, RigOptions& g) {
            "Largest angle between the pad's normal and the vertical",
            Dimension::angle,
            {0, kRightAngle, true, true}});
+  const Range turn{-kRightAngle, kRightAngle};
+  optional_section(
+      v,
+      {"rotation_limits",
+       "Least and largest rotation of a pad about the in-plane axes of the ply in the flat start; both hold "
+       "0"},
+      g.rotation_limits, RotationLimits(), [&](RotationLimits& limits) {
+        v.field({"about_warp", &limits.about_warp,
+                 "[least, largest]; > 0: the pad's normal leans towards -v. atan2(-n_v, n_z) of the normal n",
+                 Dimension::angle, turn});
+        v.field({"about_weft", &limits.about_weft,
+                 "[least, largest]; > 0: the pad's normal leans towards +u. atan2(n_u, n_z) of the normal n",
+                 Dimension::angle, turn});
+      });
+  v.field({"driven", choice(g.driven, {"z", "xyz"}),
+           "Directions in which actuators drive the joints; `xyz` without interlinks and fixed joint"});
   v.field({"interlinks", &g.interlinks, "Rigid bars between neighbouring joints"});
   v.field(
       {"fixed", &g.fixed, "Gripper [i, j] whose joint is fixed in-plane; i counts along the warp, from 1"});
-  v.field({"actuator_stiffness", &g.actuator_stiffness, "Between the commanded and the true height",
+  v.field({"actuator_stiffness", &g.actuator_stiffness,
+           "Between the commanded and the true place of a joint, in each driven direction",
            Dimension::line_stiffness, positive()});
-  v.field({"actuator_force_limit", &g.actuator_force_limit, "Largest force of an actuator", Dimension::force,
-           positive()});
-  v.field({"max_velocity", &g.max_velocity, "Largest vertical velocity of a joint", Dimension::velocity,
-           positive()});
+  v.field({"actuator_force_limit", &g.actuator_force_limit,
+           "Largest force of an actuator, in each driven direction", Dimension::force, positive()});
+  v.field({"max_velocity", &g.max_velocity, "Largest velocity of a joint, vertical or in-plane",
+           Dimension::velocity, positive()});
   v.field({"blend_time", &g.blend_time, "Time over which a change of velocity is spread", Dimension::time,
            from(0)});
+  v.field({"release_time", &g.release_time,
+           "From the end of the last stroke until the suction of all grippers ends", Dimension::time, from(0),
+           false, "absent: the ply is held to the end"});
 }
 
 void visit_schedule(FieldVisitor& v, ScheduleOptions& s) {

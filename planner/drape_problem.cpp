@@ -25,19 +25,20 @@ bool on_edge(const Ply& ply, const Eigen::Vector2d& uv, Edge edge) {
   return false;
 }
 
-/// Heights of joints where their pads touch the mold, at the mapped or at the reachable places.
-std::vector<double> touch_heights(const Case& value, const std::vector<Eigen::Vector3d>& targets,
-                                  const ReachResult& reach) {
-  std::vector<double> heights;
-  if (value.schedule.aim == Aim::reachable) {
-    for (const Eigen::Vector3d& joint : reach.joints) heights.push_back(joint.z());
-    return heights;
-  }
+/// Joints where their pads touch the mold, at the mapped or at the reachable places [m].
+std::vector<Eigen::Vector3d> touching_joints(const Case& value, const std::vector<Eigen::Vector3d>& targets,
+                                             const ReachResult& reach) {
+  if (value.schedule.aim == Aim::reachable) return reach.joints;
   const double above = 0.5 * value.material.thickness + value.grippers->joint_offset;
+  std::vector<Eigen::Vector3d> joints;
   for (const Eigen::Vector3d& target : targets) {
-    heights.push_back(target.z() + above * value.mold->normal(target.x(), target.y()).z());
+    joints.push_back(target + above * value.mold->normal(target.x(), target.y()));
   }
-  return heights;
+  return joints;
+}
+
+Eigen::Vector2d start_of_joint(const Case& value, int gripper) {
+  return value.ply.position + Eigen::Rotation2Dd(value.ply.angle) * value.grippers->place(gripper);
 }
 
 }  // namespace
@@ -79,7 +80,7 @@ ReachProblem reach_problem_of(const Case& value, const std::vector<Eigen::Vector
   problem.ply_thickness = 0.5 * value.material.thickness;
   if (rig.fixed) {
     const int index = ((*rig.fixed)[1] - 1) * rig.columns + (*rig.fixed)[0] - 1;
-    problem.fixed_place += Eigen::Rotation2Dd(value.ply.angle) * rig.place(index);
+    problem.fixed_place = start_of_joint(value, index);
   }
   return problem;
 }
@@ -93,7 +94,12 @@ DrapeProblem::DrapeProblem(Case value)
     throw std::domain_error("the schedule aims at reachable places, but there are none: " + reach_.status);
   }
   frame_.rig = *case_.grippers;
-  frame_.target_z = touch_heights(case_, map_.targets, reach_);
+  const std::vector<Eigen::Vector3d> joints = touching_joints(case_, map_.targets, reach_);
+  for (const Eigen::Vector3d& joint : joints) frame_.target_z.push_back(joint.z());
+  for (int g = 0; frame_.rig.driven == Driven::xyz && g < frame_.rig.count(); ++g) {
+    frame_.start_xy.push_back(start_of_joint(case_, g));
+    frame_.target_xy.push_back(joints[size_t(g)].head<2>());
+  }
   frame_.options = case_.schedule;
   frame_.shortest_stroke = case_.optimise.shortest_stroke;
   frame_.longest_sequence = case_.optimise.longest_sequence;

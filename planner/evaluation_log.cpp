@@ -124,6 +124,13 @@ std::uint64_t schedule_hash(const Schedule& schedule) {
       add_double(knot.z);
     }
   }
+  for (const auto& path : schedule.plane_paths) {
+    hash.add(std::uint64_t(path.size()));
+    for (const PlaneKnot& knot : path) {
+      for (const double value : {knot.time, knot.xy.x(), knot.xy.y()}) add_double(value);
+    }
+  }
+  for (const auto& time : schedule.release) add_double(time.value_or(-1));
   return hash.value();
 }
 

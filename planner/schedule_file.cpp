@@ -23,12 +23,16 @@ std::array<int, 2> name_of(size_t gripper, const RigOptions& rig) {
 }
 
 void check_fits(const Schedule& schedule, const RigOptions& rig) {
-  const bool empty_path = std::any_of(schedule.paths.begin(), schedule.paths.end(),
-                                      [](const auto& path) { return path.empty(); });
-  if (int(schedule.paths.size()) == rig.count() && !empty_path) return;
-  throw std::invalid_argument("a schedule of " + std::to_string(schedule.paths.size()) +
-                              " paths for a rig of " + std::to_string(rig.count()) + " grippers" +
-                              (empty_path ? ", one without knots" : ""));
+  const auto empty = [](const auto& path) { return path.empty(); };
+  const auto check = [&](const auto& paths, size_t count, const std::string& kind) {
+    const bool empty_path = std::any_of(paths.begin(), paths.end(), empty);
+    if (paths.size() == count && !empty_path) return;
+    throw std::invalid_argument("a schedule of " + std::to_string(paths.size()) + kind +
+                                " paths for a rig of " + std::to_string(rig.count()) + " grippers" +
+                                (empty_path ? ", one without knots" : ""));
+  };
+  check(schedule.paths, size_t(rig.count()), "");
+  check(schedule.plane_paths, rig.driven == Driven::xyz ? size_t(rig.count()) : 0, " in-plane");
 }
 
 /// As `exact`, but always a floating-point number to a JSON reader: an integer "-0" would lose its sign.
@@ -117,6 +121,7 @@ class Reader {
       return;
     }
     reading_.value.paths.resize(size_t(rig_.count()));
+    if (rig_.driven == Driven::xyz) reading_.value.plane_paths.resize(size_t(rig_.count()));
     size_t entry = 0;
     for (const Json& gripper : root.at("grippers"))
       read_gripper(gripper, "/grippers/" + std::to_string(entry++));
@@ -133,17 +138,40 @@ class Reader {
   }
 
   void read_gripper(const Json& value, const std::string& path) {
-    if (!check_object(value, path, {"gripper", "knots"})) return;
+    if (!check_object(value, path, {"gripper", "knots", "plane_knots", "release"})) return;
     const int gripper = read_name(value, path + "/gripper");
-    if (!value.contains("knots") || !value.at("knots").is_array() || value.at("knots").empty()) {
-      error(path + "/knots", "expected a list with at least one knot");
-      return;
-    }
     std::vector<Knot> knots;
-    for (const Json& knot : value.at("knots")) {
-      read_knot(knot, path + "/knots/" + std::to_string(knots.size()), knots);
+    std::vector<PlaneKnot> plane_knots;
+    read_list(value, path, "knots",
+              [&](const Json& knot, const std::string& at) { read_knot(knot, at, knots); });
+    if (rig_.driven == Driven::xyz) {
+      read_list(value, path, "plane_knots",
+                [&](const Json& knot, const std::string& at) { read_knot(knot, at, plane_knots); });
+    } else if (value.contains("plane_knots")) {
+      error(path + "/plane_knots", "the rig drives its joints in z only (grippers.driven)");
     }
-    if (gripper >= 0) reading_.value.paths[size_t(gripper)] = std::move(knots);
+    if (gripper < 0) return;
+    reading_.value.paths[size_t(gripper)] = std::move(knots);
+    if (rig_.driven == Driven::xyz) reading_.value.plane_paths[size_t(gripper)] = std::move(plane_knots);
+    if (value.contains("release")) read_release(value, path, size_t(gripper));
+  }
+
+  void read_release(const Json& value, const std::string& path, size_t gripper) {
+    const double time = number(value, path, "release");
+    if (time < 0) error(path + "/release", exact(time) + ": must not be < 0");
+    reading_.value.release.resize(size_t(rig_.count()));
+    reading_.value.release[gripper] = time;
+  }
+
+  /// A list of at least one knot, each handed to `read` with its path.
+  template <class Read>
+  void read_list(const Json& value, const std::string& path, const char* key, Read read) {
+    const std::string at = path + "/" + key;
+    if (!value.contains(key) || !value.at(key).is_array() || value.at(key).empty()) {
+      return error(at, "expected a list with at least one knot");
+    }
+    size_t index = 0;
+    for (const Json& knot : value.at(key)) read(knot, at + "/" + std::to_string(index++));
   }
 
   /// Index of the gripper, or -1.
@@ -171,6 +199,22 @@ class Reader {
       return;
     }
     const Knot knot{number(value, path, "time"), number(value, path, "z")};
+    add_knot(knot, path, knots);
+  }
+
+  void read_knot(const Json& value, const std::string& path, std::vector<PlaneKnot>& knots) {
+    if (!check_object(value, path, {"time", "x", "y"})) {
+      knots.push_back({});
+      return;
+    }
+    const double time = number(value, path, "time"), x = number(value, path, "x"),
+                 y = number(value, path, "y");
+    add_knot(PlaneKnot{time, {x, y}}, path, knots);
+  }
+
+  /// Times increase from 0.
+  template <class AnyKnot>
+  void add_knot(const AnyKnot& knot, const std::string& path, std::vector<AnyKnot>& knots) {
     if (knots.empty() && knot.time != 0)
       error(path + "/time", exact(knot.time) + ": the first knot is at time 0");
     if (!knots.empty() && !(knot.time > knots.back().time)) {
@@ -187,14 +231,19 @@ class Reader {
 };
 
 /// Knots, ends of their blends and a regular raster: increasing, from 0 to the schedule's end.
-std::vector<double> sample_times(const Schedule& schedule, const std::vector<Knot>& path, double rate) {
+std::vector<double> sample_times(const Schedule& schedule, size_t gripper, double rate) {
   const double end = schedule.duration();
-  std::vector<double> corners{0.0, end};
-  for (const Knot& knot : path) {
-    corners.push_back(knot.time);
-    corners.push_back(knot.time + schedule.blend_time);
-  }
-  std::vector<double> times = corners;
+  std::vector<double> times{0.0, end};
+  const auto add_corners = [&](const auto& path) {
+    for (const auto& knot : path) {
+      times.push_back(knot.time);
+      times.push_back(knot.time + schedule.blend_time);
+    }
+  };
+  add_corners(schedule.paths[gripper]);
+  if (!schedule.plane_paths.empty()) add_corners(schedule.plane_paths[gripper]);
+  if (gripper < schedule.release.size() && schedule.release[gripper])
+    times.push_back(*schedule.release[gripper]);
   for (int k = 1; k / rate < end; ++k) times.push_back(k / rate);
   std::sort(times.begin(), times.end());
   std::vector<double> distinct;
@@ -203,6 +252,26 @@ std::vector<double> sample_times(const Schedule& schedule, const std::vector<Kno
     if (distinct.empty() || time - distinct.back() > kSameTime) distinct.push_back(time);
   }
   return distinct;
+}
+
+std::string plane_text(const Schedule& schedule, size_t gripper) {
+  if (schedule.plane_paths.empty()) return "";
+  std::string text;
+  for (const PlaneKnot& knot : schedule.plane_paths[gripper]) {
+    text += std::string(text.empty() ? "" : ", ") + "{\"time\": " + json_number(knot.time) +
+            ", \"x\": " + json_number(knot.xy.x()) + ", \"y\": " + json_number(knot.xy.y()) + "}";
+  }
+  return ", \"plane_knots\": [" + text + "]";
+}
+
+std::string release_text(const Schedule& schedule, size_t gripper) {
+  if (gripper >= schedule.release.size() || !schedule.release[gripper]) return "";
+  return ", \"release\": " + json_number(*schedule.release[gripper]);
+}
+
+bool ever_released(const Schedule& schedule) {
+  return std::any_of(schedule.release.begin(), schedule.release.end(),
+                     [](const auto& time) { return time.has_value(); });
 }
 
 }  // namespace
@@ -220,7 +289,8 @@ void write_schedule(const std::filesystem::path& file, const Schedule& schedule,
       text += std::string(k > 0 ? ", " : "") + "{\"time\": " + json_number(knot.time) +
               ", \"z\": " + json_number(knot.z) + "}";
     }
-    text += g + 1 < schedule.paths.size() ? "]},\n" : "]}\n";
+    text += "]" + plane_text(schedule, g) + release_text(schedule, g);
+    text += g + 1 < schedule.paths.size() ? "},\n" : "}\n";
   }
   write_text(file, text + "  ]\n}\n");
 }
@@ -234,13 +304,22 @@ void write_schedule_csv(const std::filesystem::path& file, const Schedule& sched
   check_fits(schedule, rig);
   if (!(rate > 0))
     throw std::invalid_argument("write_schedule_csv: the rate must be > 0, it is " + exact(rate));
-  std::string text = "gripper_i,gripper_j,time_s,z_m,vz_m_per_s\n";
+  const bool plane = !schedule.plane_paths.empty(), suction = ever_released(schedule);
+  std::string text = std::string("gripper_i,gripper_j,time_s,z_m,vz_m_per_s") +
+                     (plane ? ",x_m,y_m,vx_m_per_s,vy_m_per_s" : "") + (suction ? ",suction" : "") + "\n";
   for (size_t g = 0; g < schedule.paths.size(); ++g) {
     const auto [i, j] = name_of(g, rig);
     const std::string name = std::to_string(i) + "," + std::to_string(j) + ",";
-    for (const double time : sample_times(schedule, schedule.paths[g], rate)) {
+    for (const double time : sample_times(schedule, g, rate)) {
       const Command command = schedule.command(int(g), time);
-      text += name + exact(time) + "," + exact(command.z) + "," + exact(command.vz) + "\n";
+      std::vector<double> values{time, command.z, command.vz};
+      if (plane)
+        values.insert(values.end(),
+                      {command.xy.x(), command.xy.y(), command.v_plane.x(), command.v_plane.y()});
+      if (suction) values.push_back(schedule.released(int(g), time) ? 0 : 1);
+      text += name;
+      for (size_t k = 0; k < values.size(); ++k) text += (k > 0 ? "," : "") + exact(values[k]);
+      text += "\n";
     }
   }
   write_text(file, text);

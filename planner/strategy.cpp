@@ -25,6 +25,10 @@ double round_height(double z) {
   return std::round(z * kTicksPerMetre) / kTicksPerMetre;
 }
 
+Eigen::Vector2d rounded(const Eigen::Vector2d& place) {
+  return {round_height(place.x()), round_height(place.y())};
+}
+
 double unit(double x) {
   return std::clamp(x, 0.0, 1.0);
 }
@@ -60,8 +64,10 @@ void shift_to_gauge(Strokes& strokes) {
 }
 
 double preshape_duration(const SequenceFrame& frame, double preshape_height) {
-  double drop = 0;
+  double drop = 0;  // or the longest way in-plane
   for (const double z : frame.target_z) drop = std::max(drop, frame.start_z() - z - preshape_height);
+  for (size_t g = 0; g < frame.target_xy.size(); ++g)
+    drop = std::max(drop, (frame.target_xy[g] - frame.start_xy[g]).norm());
   return round_time_up(std::max(frame.options.preshape_duration, drop / frame.rig.max_velocity));
 }
 
@@ -142,6 +148,12 @@ Schedule to_schedule(const SequenceFrame& frame, const Strokes& strokes) {
     add_knot(path, last + frame.options.settle, round_height(target - frame.options.overtravel));
     schedule.paths.push_back(std::move(path));
   }
+  for (size_t g = 0; g < frame.target_xy.size(); ++g) {
+    schedule.plane_paths.push_back(
+        {{0, rounded(frame.start_xy[g])}, {preshaped, rounded(frame.target_xy[g])}});
+  }
+  if (frame.rig.release_time)
+    schedule.release.assign(schedule.paths.size(), round_time(last + *frame.rig.release_time));
   return schedule;
 }
 

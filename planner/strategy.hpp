@@ -19,6 +19,8 @@ struct SequenceFrame {
   RigOptions rig;
   std::vector<double>
       target_z;  ///< height of each joint where its pad touches the mold, in the order of the grid [m]
+  /// x-y of each joint in the flat start and where its pad touches the mold [m]; empty if only z is driven.
+  std::vector<Eigen::Vector2d> start_xy = {}, target_xy = {};
   ScheduleOptions options;
   double shortest_stroke = 1.0;    ///< [s], of the searched families
   double longest_sequence = 15.0;  ///< after the preshape [s], of the searched families
@@ -58,10 +60,11 @@ Strokes wave_strokes(const SequenceFrame& frame, const WaveParameters& wave);
 /// The wave of `frame.options` as a member of the family; its delay is from start to start.
 WaveParameters baseline_wave(const SequenceFrame& frame);
 
-/// Paths of all grippers: preshape, wait, stroke to `overtravel` below the target, rest until `settle` after
-/// the last stroke. Knot times increase strictly. Times are rounded to 0.1 ms and heights to 1 um, so that
-/// equal strategies from different parametrisations are equal schedules. A preshape or stroke that would need
-/// more than `rig.max_velocity` is stretched to it (see `stretched`); the starts stay.
+/// Paths of all grippers: preshape (with all in-plane movement, if the rig has any), wait, stroke to
+/// `overtravel` below the target, rest until `settle` after the last stroke. Knot times increase strictly.
+/// Times are rounded to 0.1 ms and heights to 1 um, so that equal strategies from different parametrisations
+/// are equal schedules. A preshape or stroke that would need more than `rig.max_velocity` is stretched to it
+/// (see `stretched`); the starts stay. Suction ends `rig.release_time` after the last stroke.
 Schedule to_schedule(const SequenceFrame& frame, const Strokes& strokes);
 /// What to_schedule stretched, as a sentence; empty if nothing.
 std::string stretched(const SequenceFrame& frame, const Strokes& strokes);

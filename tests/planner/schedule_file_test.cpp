@@ -139,6 +139,70 @@ TEST_F(ScheduleFile, NotFiniteOrWrongSizedSchedulesAreNotWritten) {
   EXPECT_FALSE(std::filesystem::exists(file_));
 }
 
+const std::string kPlane = R"(, "plane_knots": [{"time": 0, "x": 0.1, "y": 0.2}])";
+const std::string kThird = R"({"gripper": [1, 1], "knots": [{"time": 0, "z": 1}])" + kPlane;
+
+TEST_F(ScheduleFile, RoundTripKeepsInPlanePathsAndReleases) {
+  rig_.driven = Driven::xyz;
+  const Schedule schedule{.paths = {{{0, 1}}, {{0, 1}, {2, 0.5}}},
+                          .blend_time = 0.1,
+                          .plane_paths = {{{0, {0.1, 1.0 / 3}}, {3, {-0.1, 0.2}}}, {{0, {0.3, 0.1}}}},
+                          .release = {std::nullopt, 2.5}};
+  write_schedule(file_, schedule, rig_);
+  const ScheduleReading reading = read_schedule(file_, rig_);
+  ASSERT_TRUE(reading.errors.empty()) << reading.errors.front().message;
+  ASSERT_EQ(reading.value.plane_paths.size(), 2u);
+  ASSERT_EQ(reading.value.plane_paths[0].size(), 2u);
+  for (size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(reading.value.plane_paths[0][k].time, schedule.plane_paths[0][k].time);
+    EXPECT_EQ(reading.value.plane_paths[0][k].xy, schedule.plane_paths[0][k].xy);
+  }
+  EXPECT_EQ(reading.value.release, schedule.release);
+}
+
+TEST_F(ScheduleFile, InPlanePathsBelongToRigsThatDriveXAndY) {
+  EXPECT_EQ(errors_of(with_grippers(kThird + "}," + kSecond)),
+            "/grippers/0/plane_knots: the rig drives its joints in z only (grippers.driven)\n");
+  EXPECT_THROW(write_schedule(file_, {{{{0, 1}}, {{0, 1}}}, 0.1, {{{0, {0, 0}}}, {{0, {0, 0}}}}}, rig_),
+               std::invalid_argument);
+  rig_.driven = Driven::xyz;
+  EXPECT_EQ(errors_of(with_grippers(kThird + "}," + kSecond)),
+            "/grippers/1/plane_knots: expected a list with at least one knot\n");
+  EXPECT_THROW(write_schedule(file_, {{{{0, 1}}, {{0, 1}}}, 0.1}, rig_), std::invalid_argument);
+  const std::string bad =
+      R"({"gripper": [2, 1], "knots": [{"time": 0, "z": 1}], "release": -1,
+          "plane_knots": [{"time": 0, "x": "left", "y": 0}, {"time": 0, "x": 1, "y": 2, "z": 3}]})";
+  EXPECT_EQ(errors_of(with_grippers(kThird + R"(, "release": "soon"},)" + bad)),
+            "/grippers/0/release: \"soon\": expected a number\n"
+            "/grippers/1/plane_knots/0/x: \"left\": expected a number\n"
+            "/grippers/1/plane_knots/1/z: unknown key; expected one of: time, x, y\n"
+            "/grippers/1/plane_knots/1/time: 0: times must increase; the knot before is at 0\n"
+            "/grippers/1/release: -1: must not be < 0\n");
+}
+
+TEST_F(ScheduleFile, CsvHasColumnsForWhatTheScheduleHasOnly) {
+  const auto header_and_last = [this](const Schedule& schedule) {
+    write_schedule_csv(file_, schedule, rig_, 10);
+    std::ifstream stream(file_);
+    std::string header, line, last;
+    std::getline(stream, header);
+    while (std::getline(stream, line)) last = line;
+    return std::pair{header, last};
+  };
+  Schedule schedule{{{{0, 1}}, {{0, 1}, {2, 0.5}}}, 0.5};
+  schedule.release = {std::nullopt, 2.0};
+  EXPECT_EQ(header_and_last(schedule),
+            (std::pair<std::string, std::string>{"gripper_i,gripper_j,time_s,z_m,vz_m_per_s,suction",
+                                                 "2,1,2.5,0.5,0,0"}));
+  schedule.release.clear();
+  rig_.driven = Driven::xyz;
+  schedule.plane_paths = {{{0, {0, 0}}}, {{0, {0.25, 1}}}};
+  EXPECT_EQ(header_and_last(schedule),
+            (std::pair<std::string, std::string>{
+                "gripper_i,gripper_j,time_s,z_m,vz_m_per_s,x_m,y_m,vx_m_per_s,vy_m_per_s",
+                "2,1,2.5,0.5,0,0.25,1,0,0"}));
+}
+
 TEST_F(ScheduleFile, CsvHoldsKnotsBlendsAndARaster) {
   const Schedule schedule{{{{0, 1}, {0.55, 0.9}, {1.003, 0.5}}, {{0, 1}}}, 0.1};
   write_schedule_csv(file_, schedule, rig_, 10);

@@ -66,6 +66,33 @@ TEST(Strategy, UniformIsOnePreshapeAndOneStrokeForAll) {
   EXPECT_EQ(schedule.paths[0].back().time, 11);
 }
 
+TEST(Strategy, RigsThatDriveXAndYMoveInPlaneDuringThePreshapeOnly) {
+  SequenceFrame frame = seed_frame();
+  EXPECT_TRUE(to_schedule(frame, uniform_strokes(frame)).plane_paths.empty());
+  for (int g = 0; g < 25; ++g) {
+    frame.start_xy.push_back(frame.rig.place(g));
+    frame.target_xy.push_back(frame.rig.place(g) * 0.9);
+  }
+  Schedule schedule = to_schedule(frame, wave_strokes(frame));
+  ASSERT_EQ(schedule.plane_paths.size(), 25u);
+  EXPECT_EQ(schedule.plane_paths[0].back().time, 5);
+  EXPECT_LE((schedule.plane_paths[0].back().xy - frame.target_xy[0]).norm(), 1e-6);
+  EXPECT_LE((schedule.plane_paths[0].front().xy - frame.start_xy[0]).norm(), 1e-6);
+  frame.rig.max_velocity = 0.2 * 0.1 * std::sqrt(2) / 10;  // the corners' way in 10 s
+  schedule = to_schedule(frame, wave_strokes(frame));
+  EXPECT_GE(schedule.plane_paths[0].back().time, 10);
+  EXPECT_LE(schedule.largest_velocity(), frame.rig.max_velocity * (1 + 1e-3));
+}
+
+TEST(Strategy, ReleaseCountsFromTheEndOfTheLastStroke) {
+  SequenceFrame frame = seed_frame();
+  EXPECT_TRUE(to_schedule(frame, wave_strokes(frame)).release.empty());
+  frame.rig.release_time = 0.25;
+  const Schedule schedule = to_schedule(frame, wave_strokes(frame));
+  ASSERT_EQ(schedule.release.size(), 25u);
+  for (const auto& time : schedule.release) EXPECT_LE(std::abs(*time - (5 + 5.1 + 0.25)), 1e-9);
+}
+
 TEST(Strategy, SeedWaveHasGroupsOfOneEightAndSixteen) {
   const SequenceFrame frame = seed_frame();
   const Strokes strokes = wave_strokes(frame);
