@@ -1,0 +1,279 @@
+// Fibre-aligned meshes of arbitrary outlines.
+//
+// A grid along the fibres is laid over the polygon. Then nodes move onto the outline until no grid line
+// between two nodes crosses it: first the node nearest to each sharp corner, then, crossing by crossing,
+// shortest move first, the inner node outwards or the outer one inwards along the grid line. Cells whose
+// nodes all lie inside or on the outline are kept; where one node is left outside, the three others are kept
+// as a triangle, a quadrilateral whose inner node is repeated: its two short edges run along the fibres, so it
+// cannot lock.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "fem/mesh.hpp"
+#include "fem/mesh_lines.hpp"
+
+namespace drapeplan {
+namespace {
+
+using Eigen::Vector2d;
+
+/// A corner that turns by more is met by a node whatever the mesh size; flatter ones are taken for a curve.
+constexpr double kSharpTurn = 20 * std::numbers::pi / 180;
+/// An inner node moves outwards by up to this share of a cell, an outer one inwards by the rest: so edges of
+/// boundary cells are between 0.6 and 1.6 cells long.
+constexpr double kOutwards = 0.6;
+/// A mesh line through a corner keeps this share of the mesh size from others, or the corner gets none.
+constexpr double kLineDistance = 2.0 / 3;
+/// Nearer than this share of the mesh size a node is on the outline: decides ties, far above round-off.
+constexpr double kOnOutline = 1e-6;
+/// Smallest area of an element, and of its corner triangles, over the square of the mesh size.
+constexpr double kSmallestArea = 0.04;
+
+enum class Side { out, on, in };
+
+[[noreturn]] void too_coarse(const std::string& why, const Vector2d& at, double mesh_size) {
+  throw std::invalid_argument("outline_mesh: " + why + " near (" + std::to_string(1e3 * at.x()) + ", " +
+                              std::to_string(1e3 * at.y()) + ") mm: the mesh size " +
+                              std::to_string(1e3 * mesh_size) + " mm is too large for this outline");
+}
+
+double cross(const Vector2d& a, const Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+std::vector<size_t> sharp_corners(const Polygon& polygon) {
+  std::vector<size_t> sharp;
+  const size_t n = polygon.size();
+  for (size_t k = 0; k < n; ++k) {
+    const Vector2d in = polygon[k] - polygon[(k + n - 1) % n], out = polygon[(k + 1) % n] - polygon[k];
+    if (std::abs(std::atan2(cross(in, out), in.dot(out))) > kSharpTurn) sharp.push_back(k);
+  }
+  return sharp;
+}
+
+/// `places` and, where there is room, the corners' coordinates; increasing.
+std::vector<double> with_corners(std::vector<double> places, const Polygon& polygon,
+                                 const std::vector<size_t>& corners, Eigen::Index axis, double lower,
+                                 double upper, double mesh_size) {
+  for (const size_t corner : corners) {
+    const double at = polygon[corner][axis];
+    const auto near = [&](double line) { return std::abs(line - at) < kLineDistance * mesh_size; };
+    if (near(lower) || near(upper) || std::any_of(places.begin(), places.end(), near)) continue;
+    places.push_back(at);
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+/// The grid over the bounding box while its nodes move onto the outline.
+class OutlineGrid {
+ public:
+  OutlineGrid(const Polygon& polygon, double mesh_size, std::vector<double> u, std::vector<double> v)
+      : polygon_(polygon), mesh_size_(mesh_size), nu_(int(u.size())), nv_(int(v.size())) {
+    for (const double vj : v) {
+      for (const double ui : u) place_.emplace_back(ui, vj);
+    }
+    for (const Vector2d& at : place_) {
+      const bool on = (nearest_on_edges(polygon_, at) - at).norm() <= kOnOutline * mesh_size_;
+      side_.push_back(on ? Side::on : contains(polygon_, at) ? Side::in : Side::out);
+    }
+    grid_ = place_;
+  }
+
+  void meet_corners(const std::vector<size_t>& corners);
+  void meet_edges();
+  [[nodiscard]] Mesh kept_cells() const;
+
+ private:
+  /// A grid line between an inner and an outer node, and where it leaves the polygon.
+  struct Crossing {
+    int in, out;
+    double share;  ///< from the inner node, in units of the line's length
+
+    [[nodiscard]] double move() const { return share < kOutwards ? share : 1 - share; }
+  };
+
+  [[nodiscard]] int node(int i, int j) const { return i + j * nu_; }
+  [[nodiscard]] double first_exit(const Vector2d& from, const Vector2d& to) const;
+  [[nodiscard]] bool keep(const std::array<int, 4>& nodes) const;
+
+  const Polygon& polygon_;
+  double mesh_size_;
+  int nu_, nv_;
+  std::vector<Vector2d> grid_, place_;  ///< before and after moving [m]
+  std::vector<Side> side_;
+};
+
+void OutlineGrid::meet_corners(const std::vector<size_t>& corners) {
+  std::vector<char> taken(place_.size(), 0);
+  for (const size_t corner : corners) {
+    const Vector2d& at = polygon_[corner];
+    size_t nearest = 0;
+    for (size_t n = 1; n < grid_.size(); ++n) {
+      if ((grid_[n] - at).squaredNorm() < (grid_[nearest] - at).squaredNorm()) nearest = n;
+    }
+    if (taken[nearest]) too_coarse("two corners are as close as a cell", at, mesh_size_);
+    taken[nearest] = 1;
+    place_[nearest] = at;
+    side_[nearest] = Side::on;
+  }
+}
+
+/// Share of the way from an inner place to an outer one at which the outline is met first.
+double OutlineGrid::first_exit(const Vector2d& from, const Vector2d& to) const {
+  const Vector2d way = to - from;
+  double first = 1;
+  for (size_t k = 0; k < polygon_.size(); ++k) {
+    const Vector2d &a = polygon_[k], edge = polygon_[(k + 1) % polygon_.size()] - a;
+    const double slope = cross(way, edge);
+    if (slope == 0) continue;
+    const double along = cross(a - from, edge) / slope, at = cross(a - from, way) / slope;
+    if (at >= 0 && at <= 1 && along >= 0) first = std::min(first, along);
+  }
+  return first;
+}
+
+void OutlineGrid::meet_edges() {
+  std::vector<Crossing> crossings;
+  const auto look = [&](int p, int q) {
+    if (side_[size_t(p)] == Side::out) std::swap(p, q);
+    if (side_[size_t(p)] != Side::in || side_[size_t(q)] != Side::out) return;
+    crossings.push_back({p, q, first_exit(grid_[size_t(p)], grid_[size_t(q)])});
+  };
+  for (int j = 0; j < nv_; ++j) {
+    for (int i = 0; i + 1 < nu_; ++i) look(node(i, j), node(i + 1, j));
+  }
+  for (int j = 0; j + 1 < nv_; ++j) {
+    for (int i = 0; i < nu_; ++i) look(node(i, j), node(i, j + 1));
+  }
+  // Ties in the order above, whatever the round-off: along 45 degrees all nodes move the same way.
+  const auto rank = [](const Crossing& c) { return std::llround(c.move() / kOnOutline); };
+  std::stable_sort(crossings.begin(), crossings.end(),
+                   [&](const Crossing& a, const Crossing& b) { return rank(a) < rank(b); });
+  for (const Crossing& c : crossings) {
+    if (side_[size_t(c.in)] != Side::in || side_[size_t(c.out)] != Side::out) continue;  // done by another
+    const auto moved = size_t(c.share < kOutwards ? c.in : c.out);
+    place_[moved] = grid_[size_t(c.in)] + c.share * (grid_[size_t(c.out)] - grid_[size_t(c.in)]);
+    side_[moved] = Side::on;
+  }
+}
+
+/// Nodes in or on the outline: whether the piece between them belongs to the ply.
+bool OutlineGrid::keep(const std::array<int, 4>& nodes) const {
+  Vector2d middle(0, 0);
+  for (const int n : nodes) {
+    if (side_[size_t(n)] == Side::in) return true;
+    middle += 0.25 * place_[size_t(n)];
+  }
+  return contains(polygon_, middle);
+}
+
+Mesh OutlineGrid::kept_cells() const {
+  Mesh mesh;
+  std::vector<int> name(place_.size(), -1);
+  for (int j = 0; j + 1 < nv_; ++j) {
+    for (int i = 0; i + 1 < nu_; ++i) {
+      std::array<int, 4> quad{node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)};
+      const auto out = [this](int n) { return side_[size_t(n)] == Side::out; };
+      const auto outside = std::count_if(quad.begin(), quad.end(), out);
+      if (outside > 1) continue;
+      if (outside == 1) {  // the corner opposite the outer one takes its place too
+        const auto k = size_t(std::find_if(quad.begin(), quad.end(), out) - quad.begin());
+        quad = {quad[(k + 1) % 4], quad[(k + 2) % 4], quad[(k + 2) % 4], quad[(k + 3) % 4]};
+      }
+      if (!keep(quad)) continue;
+      for (const int n : quad) name[size_t(n)] = 0;
+      mesh.quads.push_back(quad);
+    }
+  }
+  for (size_t n = 0; n < place_.size(); ++n) {
+    if (name[n] < 0) continue;
+    name[n] = mesh.node_count();
+    mesh.rest.push_back(place_[n]);
+  }
+  for (auto& quad : mesh.quads) {
+    for (int& n : quad) n = name[size_t(n)];
+  }
+  return mesh;
+}
+
+/// Nodes of the mesh's edge, counter-clockwise from the one nearest to `start`.
+std::vector<int> edge_of(const Mesh& mesh, const Vector2d& start, double mesh_size) {
+  std::map<std::pair<int, int>, int> sides;  // directed sides of elements; those without a partner are edge
+  for (const auto& quad : mesh.quads) {
+    for (size_t c = 0; c < 4; ++c) {
+      const int from = quad[c], to = quad[(c + 1) % 4];
+      if (from == to) continue;
+      if (const auto partner = sides.find({to, from}); partner != sides.end()) {
+        sides.erase(partner);
+      } else {
+        sides[{from, to}] = 1;
+      }
+    }
+  }
+  std::map<int, int> next;
+  for (const auto& [side, unused] : sides) {
+    if (!next.emplace(side.first, side.second).second)
+      too_coarse("the mesh touches itself", mesh.rest[size_t(side.first)], mesh_size);
+  }
+  if (next.empty()) too_coarse("nothing is left", start, mesh_size);
+  const auto nearer = [&](const auto& a, const auto& b) {
+    return (mesh.rest[size_t(a.first)] - start).squaredNorm() <
+           (mesh.rest[size_t(b.first)] - start).squaredNorm();
+  };
+  const int first = std::min_element(next.begin(), next.end(), nearer)->first;
+  std::vector<int> edge{first};
+  for (int n = next.at(first); n != first; n = next.at(n)) edge.push_back(n);
+  if (edge.size() != next.size())
+    too_coarse("the mesh falls apart", mesh.rest[size_t(first)], mesh_size);
+  return edge;
+}
+
+void check_quality(const Mesh& mesh, const Polygon& polygon, double mesh_size) {
+  const double least = kSmallestArea * mesh_size * mesh_size;
+  double area = 0;
+  for (const auto& quad : mesh.quads) {
+    double twice = 0;
+    for (size_t c = 0; c < 4; ++c) {
+      const Vector2d& here = mesh.rest[size_t(quad[c])];
+      const Vector2d &before = mesh.rest[size_t(quad[(c + 3) % 4])], &after = mesh.rest[size_t(quad[(c + 1) % 4])];
+      twice += 0.5 * cross(after - here, before - here);
+      if (quad[c] == quad[(c + 3) % 4] || quad[c] == quad[(c + 1) % 4]) continue;
+      if (!(cross(after - here, before - here) > 0)) too_coarse("an element is not convex", here, mesh_size);
+    }
+    if (!(0.5 * twice > least)) too_coarse("an element is a sliver", mesh.rest[size_t(quad[0])], mesh_size);
+    area += 0.5 * twice;
+  }
+  (void)area; (void)polygon;
+}
+
+}  // namespace
+
+Mesh outline_mesh(const Polygon& outline, double mesh_size, const std::vector<double>& u,
+                  const std::vector<double>& v) {
+  if (outline.size() < 3 || crossing_edges(outline) || !(mesh_size > 0))
+    throw std::invalid_argument("outline_mesh: needs a simple polygon and a positive mesh size");
+  const Polygon polygon = counter_clockwise(outline);
+  const Eigen::AlignedBox2d box = bounding_box(polygon);
+  const std::vector<size_t> corners = sharp_corners(polygon);
+  const auto lines = [&](const std::vector<double>& places, Eigen::Index axis) {
+    const double lower = box.min()[axis], upper = box.max()[axis];
+    return mesh_lines(lower, upper, mesh_size,
+                      with_corners(places, polygon, corners, axis, lower, upper, mesh_size));
+  };
+  OutlineGrid grid(polygon, mesh_size, lines(u, 0), lines(v, 1));
+  grid.meet_corners(corners);
+  grid.meet_edges();
+  Mesh mesh = grid.kept_cells();
+  mesh.outline = edge_of(mesh, polygon.front(), mesh_size);
+  check_quality(mesh, polygon, mesh_size);
+  return mesh;
+}
+
+}  // namespace drapeplan
