@@ -4,12 +4,14 @@
 // between two nodes crosses it: first the node nearest to each sharp corner, then, crossing by crossing,
 // shortest move first, the inner node outwards or the outer one inwards along the grid line. Cells whose
 // nodes all lie inside or on the outline are kept; where one node is left outside, the three others are kept
-// as a triangle, a quadrilateral whose inner node is repeated: its two short edges run along the fibres, so it
-// cannot lock.
+// as a triangle, a quadrilateral whose inner node is repeated: its two short edges run along the fibres, so
+// it cannot lock. Where inner nodes give way to outer ones, and whether lines run through corners, is tried
+// in a few ways: the mesh that allows the largest time step is taken.
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -25,15 +27,18 @@ using Eigen::Vector2d;
 
 /// A corner that turns by more is met by a node whatever the mesh size; flatter ones are taken for a curve.
 constexpr double kSharpTurn = 20 * std::numbers::pi / 180;
-/// An inner node moves outwards by up to this share of a cell, an outer one inwards by the rest: so edges of
-/// boundary cells are between 0.6 and 1.6 cells long.
-constexpr double kOutwards = 0.6;
+/// An inner node moves outwards by up to this share of a cell, an outer one inwards by the rest: with 0.6,
+/// edges that end on the outline are between 0.6 and 1.6 cells long.
+constexpr std::array<double, 3> kOutwards{0.6, 0.7, 0.5};
 /// A mesh line through a corner keeps this share of the mesh size from others, or the corner gets none.
 constexpr double kLineDistance = 2.0 / 3;
 /// Nearer than this share of the mesh size a node is on the outline: decides ties, far above round-off.
 constexpr double kOnOutline = 1e-6;
-/// Smallest area of an element, and of its corner triangles, over the square of the mesh size.
-constexpr double kSmallestArea = 0.04;
+/// Smallest area of the triangle at an element's corner, over the square of the mesh size.
+constexpr double kSmallestCorner = 0.01;
+
+/// Smallest stable step over that of a grid of full cells: below it the outline would set the price of a run.
+constexpr double kSmallestStep = 0.3;
 
 enum class Side { out, on, in };
 
@@ -74,8 +79,13 @@ std::vector<double> with_corners(std::vector<double> places, const Polygon& poly
 /// The grid over the bounding box while its nodes move onto the outline.
 class OutlineGrid {
  public:
-  OutlineGrid(const Polygon& polygon, double mesh_size, std::vector<double> u, std::vector<double> v)
-      : polygon_(polygon), mesh_size_(mesh_size), nu_(int(u.size())), nv_(int(v.size())) {
+  OutlineGrid(const Polygon& polygon, double mesh_size, double outwards, const std::vector<double>& u,
+              const std::vector<double>& v)
+      : polygon_(polygon),
+        mesh_size_(mesh_size),
+        outwards_(outwards),
+        nu_(int(u.size())),
+        nv_(int(v.size())) {
     for (const double vj : v) {
       for (const double ui : u) place_.emplace_back(ui, vj);
     }
@@ -95,8 +105,6 @@ class OutlineGrid {
   struct Crossing {
     int in, out;
     double share;  ///< from the inner node, in units of the line's length
-
-    [[nodiscard]] double move() const { return share < kOutwards ? share : 1 - share; }
   };
 
   [[nodiscard]] int node(int i, int j) const { return i + j * nu_; }
@@ -104,7 +112,7 @@ class OutlineGrid {
   [[nodiscard]] bool keep(const std::array<int, 4>& nodes) const;
 
   const Polygon& polygon_;
-  double mesh_size_;
+  double mesh_size_, outwards_;
   int nu_, nv_;
   std::vector<Vector2d> grid_, place_;  ///< before and after moving [m]
   std::vector<Side> side_;
@@ -153,12 +161,14 @@ void OutlineGrid::meet_edges() {
     for (int i = 0; i < nu_; ++i) look(node(i, j), node(i, j + 1));
   }
   // Ties in the order above, whatever the round-off: along 45 degrees all nodes move the same way.
-  const auto rank = [](const Crossing& c) { return std::llround(c.move() / kOnOutline); };
+  const auto rank = [this](const Crossing& c) {
+    return std::llround((c.share < outwards_ ? c.share : 1 - c.share) / kOnOutline);
+  };
   std::stable_sort(crossings.begin(), crossings.end(),
                    [&](const Crossing& a, const Crossing& b) { return rank(a) < rank(b); });
   for (const Crossing& c : crossings) {
     if (side_[size_t(c.in)] != Side::in || side_[size_t(c.out)] != Side::out) continue;  // done by another
-    const auto moved = size_t(c.share < kOutwards ? c.in : c.out);
+    const auto moved = size_t(c.share < outwards_ ? c.in : c.out);
     place_[moved] = grid_[size_t(c.in)] + c.share * (grid_[size_t(c.out)] - grid_[size_t(c.in)]);
     side_[moved] = Side::on;
   }
@@ -230,27 +240,63 @@ std::vector<int> edge_of(const Mesh& mesh, const Vector2d& start, double mesh_si
   const int first = std::min_element(next.begin(), next.end(), nearer)->first;
   std::vector<int> edge{first};
   for (int n = next.at(first); n != first; n = next.at(n)) edge.push_back(n);
-  if (edge.size() != next.size())
-    too_coarse("the mesh falls apart", mesh.rest[size_t(first)], mesh_size);
+  if (edge.size() != next.size()) too_coarse("the mesh falls apart", mesh.rest[size_t(first)], mesh_size);
   return edge;
 }
 
-void check_quality(const Mesh& mesh, const Polygon& polygon, double mesh_size) {
-  const double least = kSmallestArea * mesh_size * mesh_size;
+/// Bound of the area that a mesh of an outline with flat corners may lose: its sides cut such corners off.
+double lost_area(const Mesh& mesh, const Polygon& polygon) {
+  double lost = 0;
+  for (size_t k = 0; k < mesh.outline.size(); ++k) {
+    const Vector2d& a = mesh.rest[size_t(mesh.outline[k])];
+    const Vector2d& b = mesh.rest[size_t(mesh.outline[(k + 1) % mesh.outline.size()])];
+    const Vector2d middle = 0.5 * (a + b);
+    lost += (b - a).norm() * (nearest_on_edges(polygon, middle) - middle).norm();
+  }
+  return lost;
+}
+
+void check_elements(const Mesh& mesh, const Polygon& polygon, bool all_sharp, double mesh_size) {
   double area = 0;
   for (const auto& quad : mesh.quads) {
-    double twice = 0;
     for (size_t c = 0; c < 4; ++c) {
-      const Vector2d& here = mesh.rest[size_t(quad[c])];
-      const Vector2d &before = mesh.rest[size_t(quad[(c + 3) % 4])], &after = mesh.rest[size_t(quad[(c + 1) % 4])];
-      twice += 0.5 * cross(after - here, before - here);
-      if (quad[c] == quad[(c + 3) % 4] || quad[c] == quad[(c + 1) % 4]) continue;
-      if (!(cross(after - here, before - here) > 0)) too_coarse("an element is not convex", here, mesh_size);
+      const size_t before = size_t(quad[(c + 3) % 4]), here = size_t(quad[c]),
+                   after = size_t(quad[(c + 1) % 4]);
+      if (here == before || here == after) continue;
+      const double corner =
+          0.5 * cross(mesh.rest[after] - mesh.rest[here], mesh.rest[before] - mesh.rest[here]);
+      if (!(corner > kSmallestCorner * mesh_size * mesh_size))
+        too_coarse("an element is too flat", mesh.rest[here], mesh_size);
     }
-    if (!(0.5 * twice > least)) too_coarse("an element is a sliver", mesh.rest[size_t(quad[0])], mesh_size);
-    area += 0.5 * twice;
+    const Vector2d ac = mesh.rest[size_t(quad[2])] - mesh.rest[size_t(quad[0])];
+    area += 0.5 * cross(ac, mesh.rest[size_t(quad[3])] - mesh.rest[size_t(quad[1])]);
   }
-  (void)area; (void)polygon;
+  constexpr double kRoundOff = 1e-9;  // of the ply's area
+  const double whole = signed_area(polygon);
+  const double lost = all_sharp ? 0 : lost_area(mesh, polygon);
+  if (!(std::abs(area - whole) <= lost + kRoundOff * whole))
+    too_coarse("the outline is missed", polygon.front(), mesh_size);
+}
+
+/// Stable step for fibre stiffness alone, over that of a grid of squares as large as the mesh size: the bound
+/// of the shell term (sums of absolute rows over the mass) with unit stiffness and density.
+double step_share(const Mesh& mesh, double mesh_size) {
+  std::vector<double> rows(mesh.rest.size(), 0.0);
+  for (const auto& quad : mesh.quads) {
+    const Vector2d ac = mesh.rest[size_t(quad[2])] - mesh.rest[size_t(quad[0])];
+    const Vector2d bd = mesh.rest[size_t(quad[3])] - mesh.rest[size_t(quad[1])];
+    const double area = 0.5 * cross(ac, bd);
+    const Vector2d even = bd.cwiseAbs() / (2 * area), odd = ac.cwiseAbs() / (2 * area);
+    for (size_t c = 0; c < 4; ++c) {
+      const Vector2d& own = c % 2 == 0 ? even : odd;
+      rows[size_t(quad[c])] += area * own.cwiseProduct(2 * (even + odd)).maxCoeff();
+    }
+  }
+  const std::vector<double> areas = nodal_areas(mesh);
+  double largest = 0;
+  for (size_t n = 0; n < rows.size(); ++n) largest = std::max(largest, rows[n] / areas[n]);
+  constexpr double kSquares = 4;  // rows over area of the grid, times the square of the mesh size
+  return std::sqrt(kSquares / largest) / mesh_size;
 }
 
 }  // namespace
@@ -262,18 +308,36 @@ Mesh outline_mesh(const Polygon& outline, double mesh_size, const std::vector<do
   const Polygon polygon = counter_clockwise(outline);
   const Eigen::AlignedBox2d box = bounding_box(polygon);
   const std::vector<size_t> corners = sharp_corners(polygon);
-  const auto lines = [&](const std::vector<double>& places, Eigen::Index axis) {
-    const double lower = box.min()[axis], upper = box.max()[axis];
-    return mesh_lines(lower, upper, mesh_size,
-                      with_corners(places, polygon, corners, axis, lower, upper, mesh_size));
-  };
-  OutlineGrid grid(polygon, mesh_size, lines(u, 0), lines(v, 1));
-  grid.meet_corners(corners);
-  grid.meet_edges();
-  Mesh mesh = grid.kept_cells();
-  mesh.outline = edge_of(mesh, polygon.front(), mesh_size);
-  check_quality(mesh, polygon, mesh_size);
-  return mesh;
+  std::optional<Mesh> best;
+  std::optional<std::invalid_argument> fault;
+  double largest = 0;
+  for (const bool through_corners : {true, false}) {
+    const auto lines = [&](const std::vector<double>& places, Eigen::Index axis) {
+      const double lower = box.min()[axis], upper = box.max()[axis];
+      if (!through_corners) return mesh_lines(lower, upper, mesh_size, places);
+      return mesh_lines(lower, upper, mesh_size,
+                        with_corners(places, polygon, corners, axis, lower, upper, mesh_size));
+    };
+    for (const double outwards : kOutwards) {
+      try {
+        OutlineGrid grid(polygon, mesh_size, outwards, lines(u, 0), lines(v, 1));
+        grid.meet_corners(corners);
+        grid.meet_edges();
+        Mesh mesh = grid.kept_cells();
+        mesh.outline = edge_of(mesh, polygon.front(), mesh_size);
+        check_elements(mesh, polygon, corners.size() == polygon.size(), mesh_size);
+        const double share = step_share(mesh, mesh_size);
+        if (!(share > kSmallestStep)) too_coarse("a sliver sets the time step", polygon.front(), mesh_size);
+        if (share <= largest) continue;
+        largest = share;
+        best = std::move(mesh);
+      } catch (const std::invalid_argument& error) {
+        if (!fault) fault = error;
+      }
+    }
+  }
+  if (!best) throw std::invalid_argument(*fault);
+  return std::move(*best);
 }
 
 }  // namespace drapeplan

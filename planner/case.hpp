@@ -51,7 +51,7 @@ struct OptimiseOptions {
 };
 
 /// Edge of the ply that is clamped (strips, test specimens).
-enum class Edge { left, right, bottom, top };  ///< u = -width/2, u = +width/2, v = -height/2, v = +height/2
+enum class Edge { left, right, bottom, top };  ///< smallest u, largest u, smallest v, largest v
 
 /// A named point of the ply whose displacement is reported.
 struct Probe {

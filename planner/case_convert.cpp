@@ -92,6 +92,13 @@ MoldFields mold_fields(const Mold& mold) {
 
 }  // namespace
 
+void complete_ply(CaseFields& fields) {
+  Ply& ply = fields.value.ply;
+  const Eigen::Vector2d size = bounding_box(ply.outline).sizes();
+  ply.width = ply.outline.empty() ? fields.width.value_or(0) : size.x();
+  ply.height = ply.outline.empty() ? fields.height.value_or(0) : size.y();
+}
+
 void complete_case(CaseFields& fields) {
   Case& c = fields.value;
   if (const auto& m = fields.material) {
@@ -105,6 +112,10 @@ void complete_case(CaseFields& fields) {
 CaseFields fields_of(const Case& value) {
   CaseFields fields;
   fields.value = value;
+  if (value.ply.outline.empty()) {
+    fields.width = value.ply.width;
+    fields.height = value.ply.height;
+  }
   if (value.material.thickness > 0) fields.material = material_fields(value.material, value.material_notes);
   if (value.mold) fields.mold = mold_fields(*value.mold);
   const auto report = fields.value.fidelities.find("report");

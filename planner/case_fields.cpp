@@ -42,12 +42,19 @@ void optional_section(FieldVisitor& visitor, const Section& section, std::option
   if (present) slot = std::move(value);
 }
 
-void visit_ply(FieldVisitor& v, Ply& ply) {
+void visit_ply(FieldVisitor& v, CaseFields& fields) {
+  Ply& ply = fields.value.ply;
+  v.field({"width", &fields.width, "Size along the warp (u); the origin of (u, v) is in the middle",
+           Dimension::length, positive(kLargestLength), false, "needed without `outline`"});
+  v.field({"height", &fields.height, "Size along the weft (v)", Dimension::length, positive(kLargestLength),
+           false, "needed without `outline`"});
   v.field(
-      {"width", &ply.width, "Size along the warp (u)", Dimension::length, positive(kLargestLength), true});
+      {"outline", &ply.outline,
+       "Corners (u, v) of a ply that is no upright rectangle, in order, either way round; instead of `width` "
+       "and `height`",
+       Dimension::length, from(-kLargestLength, kLargestLength), false, "absent: a rectangle"});
   v.field(
-      {"height", &ply.height, "Size along the weft (v)", Dimension::length, positive(kLargestLength), true});
-  v.field({"position", &ply.position, "Place (x, y) of the ply's middle before draping", Dimension::length});
+      {"position", &ply.position, "Place (x, y) of the origin of (u, v) before draping", Dimension::length});
   v.field({"angle", &ply.angle, "Warp direction, from +x towards +y", Dimension::angle});
 }
 
@@ -304,7 +311,7 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
     };
     v.field({"clamped",
              edges,
-             "Edges of the ply: u = -width/2, u = +width/2, v = -height/2, v = +height/2",
+             "Edges of the ply: smallest u, largest u, smallest v, largest v",
              Dimension::none,
              {},
              true});
@@ -353,7 +360,7 @@ void visit_case(FieldVisitor& v, CaseFields& fields) {
   v.field(
       {"name", &c.name, "Short name in tables and reports", Dimension::none, {}, false, "the file's name"});
   v.field({"description", &c.description, "What the case is about"});
-  v.section({"ply", "The flat rectangular ply", true}, true, [&] { visit_ply(v, c.ply); });
+  v.section({"ply", "The flat ply: a rectangle, or any outline", true}, true, [&] { visit_ply(v, fields); });
   optional_section(v, {"material", "The fabric; an object, or the name of a file that holds it"},
                    fields.material, MaterialFields(),
                    [&v](MaterialFields& material) { visit_material(v, material); });
