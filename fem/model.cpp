@@ -63,6 +63,15 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
 
   std::vector<int> held = scene_.clamped;
   for (const int node : held) mass_[size_t(node)] = 0;
+  for (const Grip& grip : scene_.grips) {
+    if (grip.nodes.empty()) throw std::invalid_argument("grip " + grip.name + " holds no node");
+    for (const int node : grip.nodes) {
+      if (mass_[size_t(node)] == 0)
+        throw std::invalid_argument("grip " + grip.name + " holds a node that is held by something else");
+      mass_[size_t(node)] = 0;
+      held.push_back(node);
+    }
+  }
   if (scene_.rig) {
     const Eigen::Rotation2Dd turn(scene_.angle);
     std::vector<Eigen::Vector2d> place;
@@ -70,7 +79,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
       place.emplace_back(scene_.position + turn * scene_.rig->place(g));
     rig_.emplace(*scene_.rig, mesh.rest, mass_, inertia_, place, scene_.angle);
     for (const int node : rig_->tied()) {
-      if (mass_[size_t(node)] == 0) throw std::invalid_argument("a node under a pad is clamped");
+      if (mass_[size_t(node)] == 0) throw std::invalid_argument("a node under a pad is clamped or gripped");
     }
     held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
     if (std::sqrt(scene_.rig->actuator_stiffness / scene_.rig->pad_mass) * dt() > kServoStep) {
@@ -92,6 +101,7 @@ std::vector<std::string> Model::term_names() const {
   if (scene_.damping) names.emplace_back("mass damping");
   if (rig_) names.emplace_back(scene_.rig->interlinks ? "gripper rig with interlinks" : "gripper rig");
   if (!scene_.clamped.empty()) names.emplace_back("clamp");
+  if (!scene_.grips.empty()) names.emplace_back("grips");
   return names;
 }
 

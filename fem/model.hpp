@@ -8,6 +8,7 @@
 
 #include "fem/fabric.hpp"
 #include "fem/gripper_rig.hpp"
+#include "fem/grips.hpp"
 #include "fem/mesh.hpp"
 #include "fem/options.hpp"
 #include "fem/shell.hpp"
@@ -30,6 +31,7 @@ struct Scene {
   std::optional<double> friction;  ///< needs a mold
   std::optional<RigOptions> rig;
   std::vector<int> clamped;  ///< nodes that never move or turn
+  std::vector<Grip> grips;   ///< clamps that move; no node belongs to two
 };
 
 /// The discrete system: masses, terms, stable step.

@@ -78,6 +78,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
     compute_forces(model, state, work);
     kick_nodes(model, state, work);
     if (model.rig()) kick_pads(model, state, drive, work, record);
+    if (!model.scene().grips.empty()) move_grips(model, state, dt, dt, work);
     book_work(model, state, work);
     drift_nodes(model, state);
     if (model.rig()) model.rig()->drift(state, dt);

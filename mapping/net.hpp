@@ -21,9 +21,9 @@ enum class Generators {
 struct Ply {
   double width = 0;                ///< along u; of the bounding box if there is an outline [m]
   double height = 0;               ///< along v; likewise [m]
-  Polygon outline;                 ///< simple, either way round; empty: the rectangle [m]
   Eigen::Vector2d position{0, 0};  ///< x-y place of the ply frame's origin before draping [m]
   double angle = 0;                ///< warp direction from +x [rad]
+  Polygon outline;                 ///< simple, either way round; empty: the rectangle [m]
 };
 
 struct MappingOptions {

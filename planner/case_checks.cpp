@@ -108,13 +108,36 @@ void check_grippers(const CaseFields& fields, CaseReader& reader) {
   }
 }
 
+/// Both ends and the middle of a gripped piece lie on the outline, so all of it does, but for a notch
+/// between.
+void check_grips(const CaseFields& fields, CaseReader& reader) {
+  std::set<std::string> names;
+  for (size_t k = 0; k < fields.value.grips.size(); ++k) {
+    const GripOptions& grip = fields.value.grips[k];
+    const std::string pointer = "/grips/" + std::to_string(k);
+    if (reader.good(pointer + "/name") && !names.insert(grip.name).second)
+      reader.fail(pointer + "/name", "another grip has the same name");
+    if (!reader.good("/ply") || !reader.good(pointer + "/from") || !reader.good(pointer + "/to")) continue;
+    if ((grip.to - grip.from).norm() <= kOnOutline) reader.fail(pointer, "its ends coincide");
+    const Polygon outline = corners_of(fields.value.ply);
+    const auto off = [&outline](const Eigen::Vector2d& place) {
+      return (nearest_on_edges(outline, place) - place).norm() > kOnOutline;
+    };
+    if (off(grip.from)) reader.fail(pointer + "/from", "lies off the ply's outline");
+    if (off(grip.to)) reader.fail(pointer + "/to", "lies off the ply's outline");
+    if (!off(grip.from) && !off(grip.to) && off(0.5 * (grip.from + grip.to)))
+      reader.fail(pointer, "is no straight piece of the ply's outline");
+  }
+}
+
 void check_probes(const CaseFields& fields, CaseReader& reader) {
   std::set<std::string> names;
+  for (const GripOptions& grip : fields.value.grips) names.insert(grip.name);
   for (size_t k = 0; k < fields.value.probes.size(); ++k) {
     const Probe& probe = fields.value.probes[k];
     const std::string pointer = "/probes/" + std::to_string(k);
     if (reader.good(pointer + "/name") && !names.insert(probe.name).second) {
-      reader.fail(pointer + "/name", "another probe has the same name");
+      reader.fail(pointer + "/name", "another probe or grip has the same name");
     }
     if (reader.good("/ply")) check_on_ply(reader, pointer + "/place", fields.value.ply, probe.place);
   }
@@ -126,6 +149,7 @@ void check_case(const CaseFields& fields, CaseReader& reader) {
   const Case& c = fields.value;
   check_ply(fields, reader);
   check_grippers(fields, reader);
+  check_grips(fields, reader);
   check_probes(fields, reader);
   if (reader.good("/optimise") && c.optimise.longest_sequence < c.optimise.shortest_stroke) {
     reader.fail("/optimise", "longest_sequence is shorter than shortest_stroke");

@@ -58,6 +58,21 @@ void visit_ply(FieldVisitor& v, CaseFields& fields) {
   v.field({"angle", &ply.angle, "Warp direction, from +x towards +y", Dimension::angle});
 }
 
+void visit_grip(FieldVisitor& v, GripOptions& grip) {
+  v.field({"name", &grip.name, "Name in the results, among those of the probes", Dimension::none, {}, true});
+  v.field({"from",
+           &grip.from,
+           "One end of the piece (u, v), on the outline to 10 um",
+           Dimension::length,
+           {},
+           true});
+  v.field({"to", &grip.to, "Its other end, on the same edge", Dimension::length, {}, true});
+  v.field(
+      {"velocity", &grip.velocity, "Of the clamp (x, y, z), reached after the ramp", Dimension::velocity});
+  v.field({"ramp", &grip.ramp, "Time from rest to the velocity, with continuous acceleration",
+           Dimension::time, positive(1e5)});
+}
+
 void visit_curve(FieldVisitor& v, CurveFields& fields, Dimension abscissa) {
   v.field({"points",
            Table{&fields.curve, abscissa},
@@ -316,6 +331,10 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
              {},
              true});
   });
+  ObjectList grips = object_list("grips", "Rigid clamps on straight pieces of the outline, which may move",
+                                 c.grips, [&v](GripOptions& grip) { visit_grip(v, grip); });
+  grips.needs = {"material"};
+  v.list(grips);
   ObjectList probes =
       object_list("probes", "Points of the ply whose displacement is reported", c.probes, [&v](Probe& probe) {
         v.field({"name", &probe.name, "Name in the results", Dimension::none, {}, true});

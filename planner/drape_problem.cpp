@@ -1,6 +1,7 @@
 #include "planner/drape_problem.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "planner/scoring.hpp"
@@ -51,6 +52,18 @@ Mesh mesh_of(const Case& value, double mesh_size) {
   return rectangle_mesh(value.ply.width, value.ply.height, mesh_size, u, v);
 }
 
+/// Holds all nodes of the mesh's edge on the given piece.
+Grip grip_of(const GripOptions& options, const Mesh& mesh) {
+  Grip grip{options.name, {}, options.velocity, options.ramp};
+  const Eigen::Vector2d way = options.to - options.from;
+  for (const int node : mesh.outline) {
+    const Eigen::Vector2d offset = mesh.rest[size_t(node)] - options.from;
+    const double along = std::clamp(offset.dot(way) / way.squaredNorm(), 0.0, 1.0);
+    if ((offset - along * way).norm() <= kOnOutline) grip.nodes.push_back(node);
+  }
+  return grip;
+}
+
 }  // namespace
 
 Scene scene_of(const Case& value, const FemOptions& options) {
@@ -67,6 +80,7 @@ Scene scene_of(const Case& value, const FemOptions& options) {
   scene.mold = value.mold;
   scene.friction = value.friction;
   scene.rig = value.grippers;
+  for (const GripOptions& options : value.grips) scene.grips.push_back(grip_of(options, scene.mesh));
   const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
   for (int n = 0; n < scene.mesh.node_count(); ++n) {
     for (const Edge edge : value.clamped) {
