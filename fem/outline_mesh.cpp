@@ -76,6 +76,32 @@ std::vector<double> with_corners(std::vector<double> places, const Polygon& poly
   return places;
 }
 
+/// Size of square cells that fit between all lines of both directions, at most `mesh_size` and at least half
+/// of it; 0 if there is none, or no side of the polygon at 45 degrees that would gain: such a side then runs
+/// through nodes, and so do the fibres from one corner to another.
+double common_cell(const Polygon& polygon, double mesh_size, const std::vector<double>& u,
+                   const std::vector<double>& v) {
+  constexpr double kRounding = 1e-4;  // of a cell: places in files are rounded
+  bool diagonal = false;
+  for (size_t k = 0; k < polygon.size(); ++k) {
+    const Vector2d edge = (polygon[(k + 1) % polygon.size()] - polygon[k]).cwiseAbs();
+    diagonal = diagonal || std::abs(edge.x() - edge.y()) <= kRounding * mesh_size;
+  }
+  if (!diagonal) return 0;
+  const auto fits = [](const std::vector<double>& lines, double cell) {
+    for (size_t k = 1; k < lines.size(); ++k) {
+      const double cells = (lines[k] - lines[k - 1]) / cell;
+      if (std::abs(cells - std::round(cells)) > kRounding) return false;
+    }
+    return true;
+  };
+  const double gap = u[1] - u[0];
+  for (double cells = std::ceil(gap / mesh_size - kRounding); gap / cells >= 0.5 * mesh_size; ++cells) {
+    if (fits(u, gap / cells) && fits(v, gap / cells)) return gap / cells;
+  }
+  return 0;
+}
+
 /// The grid over the bounding box while its nodes move onto the outline.
 class OutlineGrid {
  public:
@@ -299,6 +325,18 @@ double step_share(const Mesh& mesh, double mesh_size) {
   return std::sqrt(kSquares / largest) / mesh_size;
 }
 
+/// The method, on one grid.
+Mesh fitted_mesh(const Polygon& polygon, const std::vector<size_t>& corners, double mesh_size,
+                 double outwards, const std::array<std::vector<double>, 2>& lines) {
+  OutlineGrid grid(polygon, mesh_size, outwards, lines[0], lines[1]);
+  grid.meet_corners(corners);
+  grid.meet_edges();
+  Mesh mesh = grid.kept_cells();
+  mesh.outline = edge_of(mesh, polygon.front(), mesh_size);
+  check_elements(mesh, polygon, corners.size() == polygon.size(), mesh_size);
+  return mesh;
+}
+
 }  // namespace
 
 Mesh outline_mesh(const Polygon& outline, double mesh_size, const std::vector<double>& u,
@@ -308,24 +346,31 @@ Mesh outline_mesh(const Polygon& outline, double mesh_size, const std::vector<do
   const Polygon polygon = counter_clockwise(outline);
   const Eigen::AlignedBox2d box = bounding_box(polygon);
   const std::vector<size_t> corners = sharp_corners(polygon);
+  const auto lines = [&](bool through_corners, Eigen::Index axis) {
+    const std::vector<double>& places = axis == 0 ? u : v;
+    const double lower = box.min()[axis], upper = box.max()[axis];
+    std::vector<double> all{lower};
+    const auto inner =
+        through_corners ? with_corners(places, polygon, corners, axis, lower, upper, mesh_size) : places;
+    all.insert(all.end(), inner.begin(), inner.end());
+    all.push_back(upper);
+    return all;
+  };
+  const double square = common_cell(polygon, mesh_size, lines(true, 0), lines(true, 1));
   std::optional<Mesh> best;
   std::optional<std::invalid_argument> fault;
   double largest = 0;
   for (const bool through_corners : {true, false}) {
-    const auto lines = [&](const std::vector<double>& places, Eigen::Index axis) {
-      const double lower = box.min()[axis], upper = box.max()[axis];
-      if (!through_corners) return mesh_lines(lower, upper, mesh_size, places);
-      return mesh_lines(lower, upper, mesh_size,
-                        with_corners(places, polygon, corners, axis, lower, upper, mesh_size));
-    };
+    if (best && square > 0) break;
+    const double cell = through_corners && square > 0 ? square * (1 + kOnOutline) : mesh_size;
+    std::array<std::vector<double>, 2> grid_lines;
+    for (const Eigen::Index axis : {0, 1}) {
+      const std::vector<double> all = lines(through_corners, axis);
+      grid_lines[size_t(axis)] = mesh_lines(all.front(), all.back(), cell, {all.begin() + 1, all.end() - 1});
+    }
     for (const double outwards : kOutwards) {
       try {
-        OutlineGrid grid(polygon, mesh_size, outwards, lines(u, 0), lines(v, 1));
-        grid.meet_corners(corners);
-        grid.meet_edges();
-        Mesh mesh = grid.kept_cells();
-        mesh.outline = edge_of(mesh, polygon.front(), mesh_size);
-        check_elements(mesh, polygon, corners.size() == polygon.size(), mesh_size);
+        Mesh mesh = fitted_mesh(polygon, corners, mesh_size, outwards, grid_lines);
         const double share = step_share(mesh, mesh_size);
         if (!(share > kSmallestStep)) too_coarse("a sliver sets the time step", polygon.front(), mesh_size);
         if (share <= largest) continue;
