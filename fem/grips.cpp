@@ -35,19 +35,19 @@ Vector3d grip_displacement(const Grip& grip, double t) {
   return (grip.ramp * s * s * s * (1 - 0.5 * s) + std::max(t - grip.ramp, 0.0)) * grip.velocity;
 }
 
-void move_grips(const Model& model, State& state, double dt, double kick_time, Workspace& work) {
+void move_grips(const Model& model, State& state, Workspace& work) {
   const double scaling = model.scene().options.time_scaling;
   for (const Grip& grip : model.scene().grips) {
-    const Vector3d way =
-        grip_displacement(grip, scaling * (state.time + dt)) - grip_displacement(grip, scaling * state.time);
-    const Vector3d next = way / dt;
+    const Vector3d way = grip_displacement(grip, scaling * (state.time + state.dt)) -
+                         grip_displacement(grip, scaling * state.time);
+    const Vector3d next = way / state.dt;
     const auto first = size_t(grip.nodes.front());
     const Vector3d mean = 0.5 * (Vector3d(state.v.x[first], state.v.y[first], state.v.z[first]) + next);
     for (const int node : grip.nodes) {
       set(state.v, size_t(node), next);
       set(work.mean_v, size_t(node), mean);
     }
-    state.work[size_t(Book::grip)] -= kick_time * pull(grip, work).dot(mean);
+    state.work[size_t(Book::grip)] -= state.kick_time() * pull(grip, work).dot(mean);
   }
 }
 

@@ -1,11 +1,14 @@
 #include "fem/model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "fem/contact.hpp"
+#include "fem/hash.hpp"
 
 namespace drapeplan {
 namespace {
@@ -35,8 +38,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   auto shell = make_shell(mesh, scene_.fabric, options);
   shell_ = shell.get();
   terms_.push_back(std::move(shell));
-  NodalStiffness stiffness{std::vector<double>(n, 0.0), std::vector<double>(n, 0.0),
-                           std::vector<double>(n, 0.0)};
+  NodalStiffness stiffness(mesh.node_count());
   terms_.front()->add_stiffness(stiffness);
   if (scene_.gravity) terms_.push_back(make_gravity(unscaled, *scene_.gravity));
   if (scene_.mold) {
@@ -49,17 +51,22 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
 
   mass_.assign(padded(int(n)), 0.0);
   inertia_ = inverse_mass_ = inverse_inertia_ = mass_;
-  double largest = 0;  // bound of the highest squared frequency, Gershgorin's rows
+  gyration2_.resize(n);
+  own_mass_.resize(n);
+  // Mass per stiffness below which the target step would be missed.
+  const double needed = std::pow(options.target_step / (2 * options.step_safety), 2);
   for (size_t k = 0; k < n; ++k) {
-    const double gyration2 =
+    gyration2_[k] =
         gyration_squared(scene_.fabric.thickness, area[k], stiffness.translation[k], stiffness.rotation[k]);
-    mass_[k] = options.mass_scaling * unscaled[k];
-    inertia_[k] = gyration2 * mass_[k];
-    largest = std::max(largest,
-                       (stiffness.translation[k] + stiffness.coupling[k] / std::sqrt(gyration2)) / mass_[k]);
+    const double row = stiffness.translation[k] + stiffness.coupling[k] / std::sqrt(gyration2_[k]);
+    own_mass_[k] = std::max(options.mass_scaling * unscaled[k], needed * row);
+    mass_[k] = own_mass_[k];
+    inertia_[k] = gyration2_[k] * mass_[k];
   }
-  stable_dt_ = 2 / std::sqrt(largest);
-  alpha_ = scene_.damping.value_or(0) / std::sqrt(options.mass_scaling);
+  stable_dt_ = stable_dt(stiffness);
+  const double scale = std::accumulate(own_mass_.begin(), own_mass_.end(), 0.0) /
+                       std::accumulate(unscaled.begin(), unscaled.end(), 0.0);
+  alpha_ = scene_.damping.value_or(0) / std::sqrt(scale);
 
   std::vector<int> held = scene_.clamped;
   for (const int node : held) mass_[size_t(node)] = 0;
@@ -95,6 +102,46 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   }
 }
 
+double Model::stable_dt(const NodalStiffness& stiffness) const {
+  double largest = 0;  // bound of the highest squared frequency
+  for (size_t k = 0; k < own_mass_.size(); ++k) {
+    const double coupling = stiffness.coupling[k] / std::sqrt(gyration2_[k]);
+    const double row = std::max(stiffness.translation[k], stiffness.rotation[k] / gyration2_[k]) + coupling;
+    largest = std::max(largest, row / own_mass_[k]);
+  }
+  return 2 / std::sqrt(largest);
+}
+
+double Model::free_mass() const {
+  return std::accumulate(mass_.begin(), mass_.end(), 0.0);
+}
+
+std::uint64_t Model::fingerprint() const {
+  Fnv1a hash;
+  const auto add = [&hash](const auto& values) {
+    for (const double value : values) hash.add(value);
+  };
+  for (const Eigen::Vector2d& place : scene_.mesh.rest) add(place);
+  for (const auto& quad : scene_.mesh.quads) add(quad);
+  for (const auto* list : {&own_mass_, &gyration2_, &mass_}) add(*list);
+  for (const StressTable* table :
+       {&scene_.fabric.tension, &scene_.fabric.compression, &scene_.fabric.shear}) {
+    add(table->rates);
+    for (const Curve& curve : table->curves) add(curve.strain), add(curve.stress);
+  }
+  const FemOptions& o = scene_.options;
+  add(std::array{stable_dt_, alpha_, o.time_scaling, o.step_safety, double(o.section_points),
+                 double(o.step_interval), o.hourglass, o.contact_stiffness, scene_.gravity.value_or(0),
+                 scene_.friction.value_or(-1), scene_.position.x(), scene_.position.y(), scene_.angle});
+  for (const Grip& grip : scene_.grips) {
+    add(grip.nodes);
+    add(grip.velocity);
+    hash.add(grip.ramp);
+  }
+  for (const std::string& name : term_names()) hash.add(name);
+  return hash.value();
+}
+
 std::vector<std::string> Model::term_names() const {
   std::vector<std::string> names;
   for (const auto& term : terms_) names.emplace_back(term->name());
@@ -113,6 +160,8 @@ State Model::flat_state(double height) const {
     state.anchor = VectorField(n);
     state.stuck.assign(padded(n), 0.0);
   }
+  state.lagged.assign(shell_->lagged_count(), 0.0);
+  state.dt = state.dt_before = dt();
   const Eigen::Rotation2Dd turn(scene_.angle);
   for (size_t k = 0; k < padded(n); ++k) {  // padding repeats the last node and has no mass
     const Eigen::Vector2d xy = scene_.position + turn * scene_.mesh.rest[std::min(k, size_t(n) - 1)];

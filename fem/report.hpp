@@ -27,14 +27,15 @@ struct RunReport {
   RunStatus status = RunStatus::done;
   std::string message;  ///< why it ended
   std::int64_t steps = 0;
-  double dt = 0;              ///< [s], of the simulation
+  double dt = 0;              ///< mean step [s], of the simulation
   double simulated_time = 0;  ///< [s], of the simulation (schedule time / time scaling)
   double wall_seconds = 0;
   double element_updates_per_second = 0;
   Energies energy;
-  double largest_kinetic_ratio = 0;  ///< kinetic energy of the ply's free nodes over internal energy at the
-                                     ///< end of each tenth, from the second on
-  double largest_penetration = 0;    ///< of the ply's underside below the mold, at the end [m]
+  double largest_kinetic_ratio = 0;    ///< kinetic energy of the ply's free nodes over internal energy at the
+                                       ///< end of each tenth, from the second on
+  double largest_hourglass_share = 0;  ///< stored hourglass energy over internal energy, at the same instants
+  double largest_penetration = 0;      ///< of the ply's underside below the mold, at the end [m]
   double largest_link_error =
       0;  ///< error of an interlink's length or of the fixed joint's place over the run [m]
   std::uint64_t state_hash = 0;

@@ -29,7 +29,7 @@ struct Incline {
     const Eigen::Vector3d normal = turn.col(2);
     // Lifted by half the thickness less the static penetration, so that nothing bounces. A bouncing node
     // loses the friction of the step at which it touches anew.
-    NodalStiffness stiffness{std::vector<double>(9), std::vector<double>(9), std::vector<double>(9)};
+    NodalStiffness stiffness(9);
     model->terms().front()->add_stiffness(stiffness);
     const std::vector<double> area = nodal_areas(scene.mesh);
     for (size_t n = 0; n < size_t(model->node_count()); ++n) {
