@@ -81,7 +81,7 @@ Scene scene_of(const Case& value, const FemOptions& options) {
   scene.mold = value.mold;
   scene.friction = value.friction;
   scene.rig = value.grippers;
-  for (const GripOptions& options : value.grips) scene.grips.push_back(grip_of(options, scene.mesh));
+  for (const GripOptions& grip : value.grips) scene.grips.push_back(grip_of(grip, scene.mesh));
   const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
   for (int n = 0; n < scene.mesh.node_count(); ++n) {
     for (const Edge edge : value.clamped) {

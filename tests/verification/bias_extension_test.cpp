@@ -94,16 +94,16 @@ ZoneShear zone_shear(const Mesh& mesh, const Snapshot& snapshot) {
 }
 
 /// Runs the test to 40 mm and compares all frames from 5 mm on.
-/// Measured: along the axis 0.15 %, zones 0.4 %, force 0.8 %. Within the middle zone the angle scatters by 5
+/// Measured: along the axis 0.3 %, zones 0.4 %, force 0.8 %. Within the middle zone the angle scatters by 5
 /// %, less the slower and the stiffer in shear: its fibres are not of equal length, and the least energy is
 /// not quite the ideal field; only the mean along the axis is fixed by the grips.
-void expect_ideal(double mesh_size) {
-  constexpr double kVelocity = 0.04, kRamp = 0.3, kEnd = 0.04;  // [m/s], [s], [m]
-  const Scene scene = specimen(mesh_size, kVelocity, kRamp);
+void expect_ideal(double mesh_size, double velocity) {
+  constexpr double kRamp = 0.3, kEnd = 0.04;  // [s], [m]
+  const Scene scene = specimen(mesh_size, velocity, kRamp);
   std::vector<Snapshot> frames;
   const RunResult run =
       simulate(Model(scene), {.schedule = nullptr,
-                              .duration = kEnd / kVelocity + kRamp / 2,
+                              .duration = kEnd / velocity + kRamp / 2,
                               .frames = 24,
                               .observe = [&frames](const Snapshot& frame) { frames.push_back(frame); }});
   ASSERT_EQ(run.report.status, RunStatus::done) << run.report.message;
@@ -120,7 +120,7 @@ void expect_ideal(double mesh_size) {
     SCOPED_TRACE(testing::Message() << "at " << 1e3 * d << " mm");
     const ZoneShear shear = zone_shear(scene.mesh, frame);
     const double ideal = ideal_shear(d), wanted = ideal_force(ideal, scene.fabric.thickness);
-    EXPECT_LE(std::abs(shear.axis / ideal - 1), 0.003);
+    EXPECT_LE(std::abs(shear.axis / ideal - 1), 0.005);
     EXPECT_LE(std::abs(shear.middle / ideal - 1), 0.01);
     EXPECT_LE(std::abs(shear.sides / (0.5 * ideal) - 1), 0.01);
     EXPECT_LE(std::abs(force / wanted - 1), 0.01);
@@ -137,11 +137,11 @@ TEST(BiasExtension, HasThePublishedAngles) {  // H = 270 mm, W = 120 mm, at 10, 
 }
 
 TEST(BiasExtension, FollowsTheKinematicsAndThePowerBalanceOfInextensibleFibres) {
-  expect_ideal(0.0213);  // cells of 21.2 mm, four over the width of the specimen along each fibre
+  expect_ideal(0.0213, 0.04);  // cells of 21.2 mm, four over the width of the specimen along each fibre
 }
 
 TEST(BiasExtension, FollowsThemWithCellsThatDoNotDivideTheSpecimen) {
-  expect_ideal(0.013);  // the mesh takes the next smaller size that does, 10.6 mm
+  expect_ideal(0.013, 0.08);  // the mesh takes the next smaller size that does, 10.6 mm
 }
 
 /// A square of fabric in a hinged frame that has sheared by `shear`: the place of a rest point.
