@@ -115,9 +115,11 @@ class OutlineGrid {
     for (const double vj : v) {
       for (const double ui : u) place_.emplace_back(ui, vj);
     }
-    for (const Vector2d& at : place_) {
-      const bool on = (nearest_on_edges(polygon_, at) - at).norm() <= kOnOutline * mesh_size_;
+    for (Vector2d& at : place_) {
+      const Vector2d nearest = nearest_on_edges(polygon_, at);
+      const bool on = (nearest - at).norm() <= kOnOutline * mesh_size_;
       side_.push_back(on ? Side::on : contains(polygon_, at) ? Side::in : Side::out);
+      if (on) at = nearest;  // corners in files are rounded
     }
     grid_ = place_;
   }

@@ -50,6 +50,8 @@ std::vector<Polygon> polygons() {
           turned(rectangle(0.2, 0.2), 30),
           turned(rectangle(0.12, 0.27), 45),
           turned(rectangle(0.15, 0.016), 30),
+          // At 45 degrees, rounded as in a file:
+          {{0.053033, -0.137886}, {0.137886, -0.053033}, {-0.053033, 0.137886}, {-0.137886, 0.053033}},
           {{0, 0}, {0.2, 0.02}, {0.05, 0.15}}};
 }
 
