@@ -33,10 +33,10 @@ Mesh rectangle_mesh(double width, double height, double mesh_size, const std::ve
 
 /// Mesh of a simple polygon, aligned with the fibres; how: see outline_mesh.cpp. Cells are at most
 /// `mesh_size` inside, stretched to twice of it at most along the outline; every element is convex, and the
-/// stable step is at least 0.3 (typically 0.6 to 0.75) of that of full cells. Every corner that turns by more
-/// than 20 degrees is met by a node; flatter ones are a curve that the mesh follows to second order. Lines go
-/// through the given places and, where there is room, through corners. The outline starts at the node nearest
-/// to the polygon's first corner.
+/// stable step is at least 0.3 (typically 0.45 to 0.65) of that of full cells. Every corner that turns by
+/// more than 20 degrees is met by a node; flatter ones are a curve that the mesh follows to second order.
+/// Lines go through the given places and, where there is room, through corners. The outline starts at the
+/// node nearest to the polygon's first corner.
 /// @throws std::invalid_argument with the place where the mesh size is too large for the outline, or if the
 /// polygon is not simple.
 Mesh outline_mesh(const Polygon& outline, double mesh_size, const std::vector<double>& u = {},

@@ -306,8 +306,8 @@ void check_elements(const Mesh& mesh, const Polygon& polygon, bool all_sharp, do
     too_coarse("the outline is missed", polygon.front(), mesh_size);
 }
 
-/// Stable step for fibre stiffness alone, over that of a grid of squares as large as the mesh size: the bound
-/// of the shell term (sums of absolute rows over the mass) with unit stiffness and density.
+/// Stable step for fibre stiffness alone, over that of a grid of squares as large as the mesh size, by
+/// sums of absolute rows over the mass: good enough to compare meshes, whatever bound the run uses.
 double step_share(const Mesh& mesh, double mesh_size) {
   std::vector<double> rows(mesh.rest.size(), 0.0);
   for (const auto& quad : mesh.quads) {

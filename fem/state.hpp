@@ -11,8 +11,8 @@
 namespace drapeplan {
 
 /// Books of work, one entry each. See Energies for their meaning.
-enum class Book { internal, gravity, contact, friction, damping, actuator, interlink, stop, grip };
-inline constexpr size_t kBooks = 9;
+enum class Book { internal, gravity, contact, friction, damping, actuator, interlink, stop, load, grip };
+inline constexpr size_t kBooks = 10;
 
 /// A rigid pad: its centre on the ply's mid-surface, its orientation and its half-step velocities.
 struct PadState {
