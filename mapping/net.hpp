@@ -23,7 +23,7 @@ struct Ply {
   double height = 0;               ///< along v; likewise [m]
   Eigen::Vector2d position{0, 0};  ///< x-y place of the ply frame's origin before draping [m]
   double angle = 0;                ///< warp direction from +x [rad]
-  Polygon outline;                 ///< simple, either way round; empty: the rectangle [m]
+  Polygon outline = {};            ///< simple, either way round; empty: the rectangle [m]
 };
 
 struct MappingOptions {
