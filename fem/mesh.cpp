@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "fem/mesh_lines.hpp"
+
 namespace drapeplan {
 
 namespace {
@@ -16,11 +18,13 @@ void divide(std::vector<double>& lines, double end, double mesh_size) {
   for (int k = 1; k <= cells; ++k) lines.push_back(k == cells ? end : start + (end - start) * k / cells);
 }
 
-/// Mesh lines over [-length/2, length/2] through `places`.
-std::vector<double> mesh_lines(double length, double mesh_size, const std::vector<double>& places) {
-  std::vector<double> lines{-0.5 * length};
+}  // namespace
+
+std::vector<double> mesh_lines(double lower, double upper, double mesh_size,
+                               const std::vector<double>& places) {
+  std::vector<double> lines{lower};
   for (const double place : places) divide(lines, place, mesh_size);
-  divide(lines, 0.5 * length, mesh_size);
+  divide(lines, upper, mesh_size);
   if (places.empty()) return lines;
   if (lines.size() > 3 && lines[1] - lines[0] < 0.5 * (lines[2] - lines[1])) lines.erase(lines.begin() + 1);
   const size_t last = lines.size() - 1;
@@ -28,8 +32,6 @@ std::vector<double> mesh_lines(double length, double mesh_size, const std::vecto
     lines.erase(lines.end() - 2);
   return lines;
 }
-
-}  // namespace
 
 Mesh rectangle_mesh(double width, double height, double mesh_size) {
   return rectangle_mesh(width, height, mesh_size, {}, {});
@@ -39,7 +41,8 @@ Mesh rectangle_mesh(double width, double height, double mesh_size, const std::ve
                     const std::vector<double>& v) {
   if (!(width > 0 && height > 0 && mesh_size > 0))
     throw std::invalid_argument("rectangle_mesh: lengths must be positive");
-  const std::vector<double> x = mesh_lines(width, mesh_size, u), y = mesh_lines(height, mesh_size, v);
+  const std::vector<double> x = mesh_lines(-0.5 * width, 0.5 * width, mesh_size, u);
+  const std::vector<double> y = mesh_lines(-0.5 * height, 0.5 * height, mesh_size, v);
   const int nx = int(x.size()) - 1, ny = int(y.size()) - 1;
   const auto node = [nx](int i, int j) { return i + j * (nx + 1); };
   Mesh mesh;
@@ -63,7 +66,12 @@ std::vector<double> nodal_areas(const Mesh& mesh) {
     const Eigen::Vector2d ac = mesh.rest[size_t(quad[2])] - mesh.rest[size_t(quad[0])];
     const Eigen::Vector2d bd = mesh.rest[size_t(quad[3])] - mesh.rest[size_t(quad[1])];
     const double area = 0.5 * (ac.x() * bd.y() - ac.y() * bd.x());
-    for (const int corner : quad) areas[size_t(corner)] += 0.25 * area;
+    // In a triangle the repeated node counts once.
+    const auto repeats = [&quad](size_t c) { return quad[c] == quad[(c + 3) % 4]; };
+    const bool triangle = repeats(0) || repeats(1) || repeats(2) || repeats(3);
+    for (size_t c = 0; c < 4; ++c) {
+      if (!repeats(c)) areas[size_t(quad[c])] += area / (triangle ? 3 : 4);
+    }
   }
   return areas;
 }

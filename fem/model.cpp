@@ -67,6 +67,15 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   std::vector<int> held = scene_.clamped;
   for (const int node : held) mass_[size_t(node)] = 0;
   for (const int node : scene_.pinned) mass_[size_t(node)] = 0;
+  for (const Grip& grip : scene_.grips) {
+    if (grip.nodes.empty()) throw std::invalid_argument("grip " + grip.name + " holds no node");
+    for (const int node : grip.nodes) {
+      if (mass_[size_t(node)] == 0)
+        throw std::invalid_argument("grip " + grip.name + " holds a node that is held by something else");
+      mass_[size_t(node)] = 0;
+      held.push_back(node);
+    }
+  }
   if (scene_.rig) {
     const Eigen::Rotation2Dd turn(scene_.angle);
     std::vector<Eigen::Vector2d> place;
@@ -74,7 +83,8 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
       place.emplace_back(scene_.position + turn * scene_.rig->place(g));
     rig_.emplace(*scene_.rig, mesh.rest, mass_, inertia_, place, scene_.angle);
     for (const int node : rig_->tied()) {
-      if (mass_[size_t(node)] == 0) throw std::invalid_argument("a node under a pad is clamped or pinned");
+      if (mass_[size_t(node)] == 0)
+        throw std::invalid_argument("a node under a pad is clamped, pinned or gripped");
     }
     held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
     // The joint's mobility: of the pad's mass, and of its inertia through the arm.
@@ -130,6 +140,20 @@ std::uint64_t Model::fingerprint() const {
     }
     add(scene_.loads->pressure);
   }
+  for (const Grip& grip : scene_.grips) {
+    add(grip.nodes);
+    add(grip.velocity);
+    hash.add(grip.ramp);
+  }
+  if (scene_.rig) {
+    const RigOptions& r = *scene_.rig;
+    add(std::array{r.spacing, r.pad_radius, r.pad_mass, r.joint_offset, r.tilt_limit, r.actuator_stiffness,
+                   r.actuator_force_limit, double(r.columns), double(r.rows)});
+    if (r.rotation_limits) {
+      const RotationLimits& limits = *r.rotation_limits;
+      add(std::array{limits.about_warp[0], limits.about_warp[1], limits.about_weft[0], limits.about_weft[1]});
+    }
+  }
   for (const std::string& name : term_names()) hash.add(name);
   return hash.value();
 }
@@ -141,6 +165,7 @@ std::vector<std::string> Model::term_names() const {
   if (rig_) names.emplace_back(scene_.rig->interlinks ? "gripper rig with interlinks" : "gripper rig");
   if (!scene_.clamped.empty()) names.emplace_back("clamp");
   if (!scene_.pinned.empty()) names.emplace_back("pin");
+  if (!scene_.grips.empty()) names.emplace_back("grips");
   return names;
 }
 

@@ -8,6 +8,7 @@
 
 #include "fem/fabric.hpp"
 #include "fem/gripper_rig.hpp"
+#include "fem/grips.hpp"
 #include "fem/loads.hpp"
 #include "fem/mesh.hpp"
 #include "fem/options.hpp"
@@ -33,6 +34,7 @@ struct Scene {
   std::optional<Loads> loads;
   std::vector<int> clamped;           ///< nodes that never move or turn
   std::vector<int> pinned;            ///< nodes that never move; their directors turn
+  std::vector<Grip> grips;            ///< clamps that move; no node belongs to two
   std::optional<RestCriterion> rest;  ///< when a run may end before its time
 };
 

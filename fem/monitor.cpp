@@ -17,7 +17,7 @@ Energies energies(const Model& model, const State& state) {
   Energies e;
   e.kinetic = kinetic_energy(model, state);
   e.internal = -work(Book::internal);
-  e.external = work(Book::gravity) + work(Book::actuator) + work(Book::load);
+  e.external = work(Book::gravity) + work(Book::actuator) + work(Book::load) + work(Book::grip);
   e.friction = -work(Book::friction);
   e.contact = -work(Book::contact);
   e.damping = -work(Book::damping);
@@ -97,6 +97,7 @@ Snapshot take_snapshot(const Model& model, const State& state, const RigDrive& d
     out.director.emplace_back(state.d.x[n], state.d.y[n], state.d.z[n]);
   }
   model.shell().strains(state, out);
+  if (!model.scene().grips.empty()) out.grip_force = grip_forces(model, state);
   if (model.rig() && drive.schedule) model.rig()->snapshot(state, drive, out);
   return out;
 }

@@ -49,6 +49,9 @@ struct Clock {
     end /= scaling;
     pause = request.pause > 0 ? request.pause / scaling : end;
     motion_end = request.schedule ? request.schedule->last_motion() / scaling : 0;
+    for (const Grip& grip : model.scene().grips) {
+      if (!grip.velocity.isZero()) motion_end = end;
+    }
     if (!(end / model.dt() <= kMostSteps))
       throw std::invalid_argument("simulate: the run would need more than 1e10 steps");
   }
@@ -120,6 +123,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
     compute_forces(model, state, work);
     kick_nodes(model, state, work);
     if (model.rig()) kick_pads(model, state, drive, work);
+    if (!model.scene().grips.empty()) move_grips(model, state, work);
     book_work(model, state, work);
     drift_nodes(model, state);
     if (model.rig()) model.rig()->drift(state);

@@ -11,8 +11,10 @@
 namespace drapeplan {
 
 /// Books of work, one entry each. See Energies for their meaning.
-enum class Book { internal, gravity, contact, friction, damping, actuator, interlink, stop, load, release };
-inline constexpr size_t kBooks = 10;
+enum class Book {
+  internal, gravity, contact, friction, damping, actuator, interlink, stop, load, release, grip
+};
+inline constexpr size_t kBooks = 11;
 
 /// A rigid pad: its centre on the ply's mid-surface, its orientation and its half-step velocities.
 struct PadState {

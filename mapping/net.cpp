@@ -30,18 +30,21 @@ using HalfLines = std::array<Eigen::Vector2d, 4>;
 }
 
 void check(const Ply& ply, const MappingOptions& options) {
-  const Eigen::Vector2d half(ply.width / 2, ply.height / 2);
-  if (!(half.minCoeff() > 0) || !half.allFinite()) {
+  if (ply.outline.empty() && !(std::min(ply.width, ply.height) > 0)) {
     throw std::invalid_argument("mapping: the ply's width and height must be > 0 m");
   }
+  const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
+  if (!(box.sizes().minCoeff() > 0) || !box.sizes().allFinite())
+    throw std::invalid_argument("mapping: the ply has no area");
   if (!std::isfinite(ply.angle)) throw std::invalid_argument("mapping: the ply's angle is not finite");
   if (!(options.cell_size > 0)) throw std::invalid_argument("mapping: cell_size must be > 0 m");
-  const Eigen::Vector2d cells = 2 * half / options.cell_size;
+  const Eigen::Vector2d cells = box.sizes() / options.cell_size;
   if (!((cells.x() + 3) * (cells.y() + 3) <= kMostNodes)) {
     throw std::invalid_argument("mapping: cell_size " + std::to_string(options.cell_size) +
                                 " m gives a net of too many nodes");
   }
-  if (!((options.ply_start.cwiseAbs() - (1 + kRoundOff) * half).maxCoeff() <= 0)) {
+  const Eigen::Vector2d from_middle = (options.ply_start - box.center()).cwiseAbs();
+  if (!((from_middle - (0.5 + kRoundOff) * box.sizes()).maxCoeff() <= 0)) {
     throw std::invalid_argument("mapping: ply_start lies outside the ply");
   }
 }
@@ -52,16 +55,17 @@ struct Lines {
   int start = 0;           // index of the line through the start point
 };
 
-Lines net_lines(double side, double start, double cell_size) {
-  const double half = side / 2;
+Lines net_lines(double lower, double upper, double start, double cell_size) {
+  const double side = upper - lower;
   const auto cells = [&](double length) {
     return length <= kRoundOff * side ? 0 : static_cast<int>(std::ceil(length / cell_size * (1 - kRoundOff)));
   };
-  const int before = cells(start + half), after = cells(half - start);
+  const int before = cells(start - lower), after = cells(upper - start);
   Lines lines{{}, before};
-  for (int k = 0; k < before; ++k) lines.at.push_back(-half + (start + half) * k / before);
+  for (int k = 0; k < before; ++k) lines.at.push_back(lower + (start - lower) * k / before);
   lines.at.push_back(start);
-  for (int k = 1; k <= after; ++k) lines.at.push_back(k == after ? half : start + (half - start) * k / after);
+  for (int k = 1; k <= after; ++k)
+    lines.at.push_back(k == after ? upper : start + (upper - start) * k / after);
   return lines;
 }
 
@@ -158,10 +162,17 @@ void fill_quadrant(const Mold& mold, int i0, int j0, int di, int dj, Net& net) {
 
 }  // namespace
 
+Polygon corners_of(const Ply& ply) {
+  if (!ply.outline.empty()) return counter_clockwise(ply.outline);
+  const double u = ply.width / 2, v = ply.height / 2;
+  return {{-u, -v}, {u, -v}, {u, v}, {-u, v}};
+}
+
 Net map_ply(const Mold& mold, const Ply& ply, const MappingOptions& options) {
   check(ply, options);
-  const Lines u = net_lines(ply.width, options.ply_start.x(), options.cell_size);
-  const Lines v = net_lines(ply.height, options.ply_start.y(), options.cell_size);
+  const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
+  const Lines u = net_lines(box.min().x(), box.max().x(), options.ply_start.x(), options.cell_size);
+  const Lines v = net_lines(box.min().y(), box.max().y(), options.ply_start.y(), options.cell_size);
   const size_t nu = u.at.size(), nv = v.at.size();
   Net net{u.at, v.at, std::vector<Eigen::Vector3d>(nu * nv, Eigen::Vector3d::Constant(kNaN)), true};
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mapping/mold.hpp"
+#include "mapping/polygon.hpp"
 
 namespace drapeplan {
 
@@ -15,12 +16,14 @@ enum class Generators {
   mid_sides,  ///< geodesics from the start point to the four mid-sides of the mold's extent (the seed's text)
 };
 
-/// Flat rectangular ply. Ply frame: origin in its middle, u along the warp, v along the weft [m].
+/// Flat ply. Ply frame: u along the warp, v along the weft; origin in a rectangle's middle, or as the
+/// outline's points say [m].
 struct Ply {
-  double width = 0;                ///< along u [m]
-  double height = 0;               ///< along v [m]
-  Eigen::Vector2d position{0, 0};  ///< x-y place of the ply's middle before draping [m]
+  double width = 0;                ///< along u; of the bounding box if there is an outline [m]
+  double height = 0;               ///< along v; likewise [m]
+  Eigen::Vector2d position{0, 0};  ///< x-y place of the ply frame's origin before draping [m]
   double angle = 0;                ///< warp direction from +x [rad]
+  Polygon outline = {};            ///< simple, either way round; empty: the rectangle [m]
 };
 
 struct MappingOptions {
@@ -41,21 +44,29 @@ struct Net {
   }
 };
 
-/// Maps the ply onto the mold. Seed, "Energy Mapping Algorithm" (after Bergsma and Huisman): the fibre lines
-/// through the start point are geodesics; every other node is the free corner of a bilinear element that
-/// minimises the fibre strain energy of Eq. (3).
+/// The ply's corners, counter-clockwise: its outline, or the rectangle's corners from (-,-).
+Polygon corners_of(const Ply& ply);
+
+/// Maps the ply's bounding box onto the mold. Seed, "Energy Mapping Algorithm" (after Bergsma and Huisman):
+/// the fibre lines through the start point are geodesics; every other node is the free corner of a bilinear
+/// element that minimises the fibre strain energy of Eq. (3).
 /// @throws std::domain_error with the place where the mold ends or the minimisation fails.
 Net map_ply(const Mold& mold, const Ply& ply, const MappingOptions& options);
 
 /// Mapped place of the ply point (u, v) [m]: bicubic in x-y between net nodes, then put on the mold.
-/// @throws std::out_of_range outside the ply.
+/// @throws std::out_of_range outside the net.
 Eigen::Vector3d mapped_point(const Net& net, const Mold& mold, const Eigen::Vector2d& uv);
 
 /// Net nodes along the ply's outline, counter-clockwise in the ply from corner (-,-); closed: the first point
 /// is repeated at the end [m].
 std::vector<Eigen::Vector3d> prescribed_boundary(const Net& net);
 
-/// The four mapped corners in ply order (-,-), (+,-), (+,+), (-,+) [m].
+/// Mapped outline of the ply, counter-clockwise from its first corner; closed [m]. Of a rectangle: the above.
+/// Else mapped points along each edge, no further apart in the ply than the net's widest cell.
+std::vector<Eigen::Vector3d> prescribed_boundary(const Net& net, const Mold& mold, const Ply& ply);
+
+/// The four mapped corners of the net, that is of the ply's bounding box, in ply order (-,-), (+,-), (+,+),
+/// (-,+) [m].
 std::vector<Eigen::Vector3d> mapped_corners(const Net& net);
 
 /// Shear angle at the middle of each cell [rad]: change of the angle between warp and weft, > 0 where the

@@ -65,6 +65,24 @@ std::vector<Eigen::Vector3d> prescribed_boundary(const Net& net) {
   return outline;
 }
 
+std::vector<Eigen::Vector3d> prescribed_boundary(const Net& net, const Mold& mold, const Ply& ply) {
+  if (ply.outline.empty()) return prescribed_boundary(net);
+  double widest = 0;
+  for (const auto* lines : {&net.u, &net.v}) {
+    for (size_t k = 1; k < lines->size(); ++k) widest = std::max(widest, (*lines)[k] - (*lines)[k - 1]);
+  }
+  const Polygon corners = corners_of(ply);
+  std::vector<Eigen::Vector3d> boundary;
+  for (size_t k = 0; k < corners.size(); ++k) {
+    const Eigen::Vector2d from = corners[k], edge = corners[(k + 1) % corners.size()] - from;
+    const int parts = std::max(1, int(std::ceil(edge.norm() / widest)));
+    for (int part = 0; part < parts; ++part)
+      boundary.push_back(mapped_point(net, mold, from + edge * (double(part) / parts)));
+  }
+  boundary.push_back(boundary.front());
+  return boundary;
+}
+
 std::vector<Eigen::Vector3d> mapped_corners(const Net& net) {
   const int i = static_cast<int>(net.u.size()) - 1, j = static_cast<int>(net.v.size()) - 1;
   return {net.node(0, 0), net.node(i, 0), net.node(i, j), net.node(0, j)};

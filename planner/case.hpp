@@ -51,7 +51,18 @@ struct OptimiseOptions {
 };
 
 /// Edge of the ply that is clamped (strips, test specimens).
-enum class Edge { left, right, bottom, top };  ///< u = -width/2, u = +width/2, v = -height/2, v = +height/2
+enum class Edge { left, right, bottom, top };  ///< smallest u, largest u, smallest v, largest v
+
+/// A clamp on a straight piece of the ply's outline.
+struct GripOptions {
+  std::string name;
+  Eigen::Vector2d from{0, 0}, to{0, 0};  ///< ends of the piece (u, v) [m]
+  Eigen::Vector3d velocity{0, 0, 0};     ///< world frame [m/s]
+  double ramp = 0.1;                     ///< from rest to the velocity [s]
+};
+
+/// By how much a grip's ends, which are rounded in files, may miss the outline [m].
+inline constexpr double kOnOutline = 1e-5;
 
 /// A named point of the ply whose displacement is reported.
 struct Probe {
@@ -89,6 +100,7 @@ struct Case {
   std::optional<double> damping;  ///< mass-proportional rate alpha of the unscaled ply [1/s]
   std::optional<RestCriterion> rest;
   std::vector<Edge> clamped;
+  std::vector<GripOptions> grips;
   std::vector<Probe> probes;
   std::vector<Reference> references;
   double duration = 0;  ///< of a run without grippers [s]

@@ -13,14 +13,40 @@ constexpr double kSlack = 1e-9;     // [m] or cells, so that what fits exactly f
 constexpr double kMostCells = 4e6;  // of a net or mesh; far above use, below what fills the memory
 
 bool on_ply(const Ply& ply, const Eigen::Vector2d& place) {
-  return std::abs(place.x()) <= 0.5 * ply.width + kSlack && std::abs(place.y()) <= 0.5 * ply.height + kSlack;
+  return contains(corners_of(ply), place, kSlack);
+}
+
+std::string place_text(const Eigen::Vector2d& place) {
+  return "(" + format_quantity(place.x(), Dimension::length) + ", " +
+         format_quantity(place.y(), Dimension::length) + ")";
 }
 
 std::string ply_text(const Ply& ply) {
-  return "the ply reaches from (" + format_quantity(-0.5 * ply.width, Dimension::length) + ", " +
-         format_quantity(-0.5 * ply.height, Dimension::length) + ") to (" +
-         format_quantity(0.5 * ply.width, Dimension::length) + ", " +
-         format_quantity(0.5 * ply.height, Dimension::length) + ")";
+  const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
+  const std::string reach = " reaches from " + place_text(box.min()) + " to " + place_text(box.max());
+  return ply.outline.empty() ? "the ply" + reach : "the ply's outline" + reach;
+}
+
+/// Without an outline a ply is a rectangle, whose size must be stated.
+void check_ply(const CaseFields& fields, CaseReader& reader) {
+  const Polygon& outline = fields.value.ply.outline;
+  const bool stated_well = reader.good("/ply");
+  for (const auto& [name, size] : {std::pair{"width", fields.width}, {"height", fields.height}}) {
+    if (!outline.empty() && size)
+      reader.fail(std::string("/ply/") + name,
+                  "belongs to a ply without an outline; the outline says the size");
+    if (outline.empty() && !size && stated_well)
+      reader.fail("/ply", std::string("\"") + name +
+                              "\" is missing; a ply has either width and height or an outline");
+  }
+  if (outline.empty() || !reader.good("/ply/outline")) return;
+  if (const auto edges = crossing_edges(outline)) {
+    const auto edge = [](size_t k) { return "the edge from point " + std::to_string(k + 1); };
+    const auto [i, j] = *edges;
+    reader.fail("/ply/outline",
+                i == j ? edge(i) + " has no length"
+                       : "the outline crosses or touches itself: " + edge(i) + " meets " + edge(j));
+  }
 }
 
 void check_on_ply(CaseReader& reader, const std::string& pointer, const Ply& ply,
@@ -42,7 +68,12 @@ void check_mapping(const CaseFields& fields, CaseReader& reader) {
   if (!mapping || !reader.good("/mapping")) return;
   check_cells(reader, reader.good("/mapping/cell_size") ? "/mapping/cell_size" : "/mapping", fields.value.ply,
               mapping->cell_size);
-  check_on_ply(reader, "/mapping/ply_start", fields.value.ply, mapping->ply_start);
+  const bool start_stated = reader.good("/mapping/ply_start");
+  if (!on_ply(fields.value.ply, mapping->ply_start)) {
+    reader.fail(start_stated ? "/mapping/ply_start" : "/mapping",
+                std::string(start_stated ? "lies" : "its ply_start, the ply's origin, lies") +
+                    " outside the ply; " + ply_text(fields.value.ply));
+  }
   if (!fields.mold || !reader.good("/mold")) return;
   const Extent& extent = fields.mold->extent;
   const bool inside = (mapping->start.array() >= extent.lower.array()).all() &&
@@ -68,13 +99,13 @@ void check_rotation_limits(const RigOptions& rig, CaseReader& reader) {
 void check_grippers(const CaseFields& fields, CaseReader& reader) {
   if (!fields.value.grippers || !reader.good("/grippers")) return;
   const RigOptions& rig = *fields.value.grippers;
-  if (reader.good("/ply") && !on_ply(fields.value.ply, rig.place(0))) {
-    const Eigen::Vector2d place = rig.place(rig.count() - 1);
-    reader.fail("/grippers/spacing",
-                "gripper [" + std::to_string(rig.columns) + ", " + std::to_string(rig.rows) +
-                    "] is off the ply: its pad's centre lies at (" +
-                    format_quantity(place.x(), Dimension::length) + ", " +
-                    format_quantity(place.y(), Dimension::length) + "); " + ply_text(fields.value.ply));
+  for (int g = rig.count() - 1; g >= 0 && reader.good("/ply"); --g) {
+    if (on_ply(fields.value.ply, rig.place(g))) continue;
+    reader.fail("/grippers/spacing", "gripper [" + std::to_string(g % rig.columns + 1) + ", " +
+                                         std::to_string(g / rig.columns + 1) +
+                                         "] is off the ply: its pad's centre lies at " +
+                                         place_text(rig.place(g)) + "; " + ply_text(fields.value.ply));
+    break;
   }
   if (rig.count() > 1 && rig.spacing < 2 * rig.pad_radius) {
     reader.fail("/grippers/spacing", "the pads overlap; allowed: at least twice pad_radius, " +
@@ -99,13 +130,36 @@ void check_grippers(const CaseFields& fields, CaseReader& reader) {
   }
 }
 
+/// Both ends and the middle of a gripped piece lie on the outline, so all of it does, but for a notch
+/// between.
+void check_grips(const CaseFields& fields, CaseReader& reader) {
+  std::set<std::string> names;
+  for (size_t k = 0; k < fields.value.grips.size(); ++k) {
+    const GripOptions& grip = fields.value.grips[k];
+    const std::string pointer = "/grips/" + std::to_string(k);
+    if (reader.good(pointer + "/name") && !names.insert(grip.name).second)
+      reader.fail(pointer + "/name", "another grip has the same name");
+    if (!reader.good("/ply") || !reader.good(pointer + "/from") || !reader.good(pointer + "/to")) continue;
+    if ((grip.to - grip.from).norm() <= kOnOutline) reader.fail(pointer, "its ends coincide");
+    const Polygon outline = corners_of(fields.value.ply);
+    const auto off = [&outline](const Eigen::Vector2d& place) {
+      return (nearest_on_edges(outline, place) - place).norm() > kOnOutline;
+    };
+    if (off(grip.from)) reader.fail(pointer + "/from", "lies off the ply's outline");
+    if (off(grip.to)) reader.fail(pointer + "/to", "lies off the ply's outline");
+    if (!off(grip.from) && !off(grip.to) && off(0.5 * (grip.from + grip.to)))
+      reader.fail(pointer, "is no straight piece of the ply's outline");
+  }
+}
+
 void check_probes(const CaseFields& fields, CaseReader& reader) {
   std::set<std::string> names;
+  for (const GripOptions& grip : fields.value.grips) names.insert(grip.name);
   for (size_t k = 0; k < fields.value.probes.size(); ++k) {
     const Probe& probe = fields.value.probes[k];
     const std::string pointer = "/probes/" + std::to_string(k);
     if (reader.good(pointer + "/name") && !names.insert(probe.name).second) {
-      reader.fail(pointer + "/name", "another probe has the same name");
+      reader.fail(pointer + "/name", "another probe or grip has the same name");
     }
     if (reader.good("/ply")) check_on_ply(reader, pointer + "/place", fields.value.ply, probe.place);
   }
@@ -152,8 +206,10 @@ void check_material(const CaseFields& fields, CaseReader& reader) {
 
 void check_case(const CaseFields& fields, CaseReader& reader) {
   const Case& c = fields.value;
+  check_ply(fields, reader);
   check_material(fields, reader);
   check_grippers(fields, reader);
+  check_grips(fields, reader);
   check_probes(fields, reader);
   if (reader.good("/optimise") && c.optimise.longest_sequence < c.optimise.shortest_stroke) {
     reader.fail("/optimise", "longest_sequence is shorter than shortest_stroke");

@@ -120,6 +120,13 @@ MoldFields mold_fields(const Mold& mold) {
 
 }  // namespace
 
+void complete_ply(CaseFields& fields) {
+  Ply& ply = fields.value.ply;
+  const Eigen::Vector2d size = bounding_box(ply.outline).sizes();
+  ply.width = ply.outline.empty() ? fields.width.value_or(0) : size.x();
+  ply.height = ply.outline.empty() ? fields.height.value_or(0) : size.y();
+}
+
 StressTable stress_table(const CurveFields& fields) {
   if (fields.rates.empty()) return scaled(fields.curve, fields.factor);
   StressTable table;
@@ -146,6 +153,10 @@ void complete_case(CaseFields& fields) {
 CaseFields fields_of(const Case& value) {
   CaseFields fields;
   fields.value = value;
+  if (value.ply.outline.empty()) {
+    fields.width = value.ply.width;
+    fields.height = value.ply.height;
+  }
   if (value.material.thickness > 0) fields.material = material_fields(value.material, value.material_notes);
   if (value.mold) fields.mold = mold_fields(*value.mold);
   if (value.damping) fields.damping.emplace().alpha = *value.damping;

@@ -42,13 +42,35 @@ void optional_section(FieldVisitor& visitor, const Section& section, std::option
   if (present) slot = std::move(value);
 }
 
-void visit_ply(FieldVisitor& v, Ply& ply) {
+void visit_ply(FieldVisitor& v, CaseFields& fields) {
+  Ply& ply = fields.value.ply;
+  v.field({"width", &fields.width, "Size along the warp (u); the origin of (u, v) is in the middle",
+           Dimension::length, positive(kLargestLength), false, "needed without `outline`"});
+  v.field({"height", &fields.height, "Size along the weft (v)", Dimension::length, positive(kLargestLength),
+           false, "needed without `outline`"});
   v.field(
-      {"width", &ply.width, "Size along the warp (u)", Dimension::length, positive(kLargestLength), true});
+      {"outline", &ply.outline,
+       "Corners (u, v) of a ply that is no upright rectangle, in order, either way round; instead of `width` "
+       "and `height`",
+       Dimension::length, from(-kLargestLength, kLargestLength), false, "absent: a rectangle"});
   v.field(
-      {"height", &ply.height, "Size along the weft (v)", Dimension::length, positive(kLargestLength), true});
-  v.field({"position", &ply.position, "Place (x, y) of the ply's middle before draping", Dimension::length});
+      {"position", &ply.position, "Place (x, y) of the origin of (u, v) before draping", Dimension::length});
   v.field({"angle", &ply.angle, "Warp direction, from +x towards +y", Dimension::angle});
+}
+
+void visit_grip(FieldVisitor& v, GripOptions& grip) {
+  v.field({"name", &grip.name, "Name in the results, among those of the probes", Dimension::none, {}, true});
+  v.field({"from",
+           &grip.from,
+           "One end of the piece (u, v), on the outline to 10 um",
+           Dimension::length,
+           {},
+           true});
+  v.field({"to", &grip.to, "Its other end, on the same edge", Dimension::length, {}, true});
+  v.field(
+      {"velocity", &grip.velocity, "Of the clamp (x, y, z), reached after the ramp", Dimension::velocity});
+  v.field({"ramp", &grip.ramp, "Time from rest to the velocity, with continuous acceleration",
+           Dimension::time, positive(1e5)});
 }
 
 void visit_curve(FieldVisitor& v, CurveFields& fields, Dimension abscissa) {
@@ -376,11 +398,15 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
     };
     v.field({"clamped",
              edges,
-             "Edges of the ply: u = -width/2, u = +width/2, v = -height/2, v = +height/2",
+             "Edges of the ply: smallest u, largest u, smallest v, largest v",
              Dimension::none,
              {},
              true});
   });
+  ObjectList grips = object_list("grips", "Rigid clamps on straight pieces of the outline, which may move",
+                                 c.grips, [&v](GripOptions& grip) { visit_grip(v, grip); });
+  grips.needs = {"material"};
+  v.list(grips);
   ObjectList probes =
       object_list("probes", "Points of the ply whose displacement is reported", c.probes, [&v](Probe& probe) {
         v.field({"name", &probe.name, "Name in the results", Dimension::none, {}, true});
@@ -425,7 +451,7 @@ void visit_case(FieldVisitor& v, CaseFields& fields) {
   v.field(
       {"name", &c.name, "Short name in tables and reports", Dimension::none, {}, false, "the file's name"});
   v.field({"description", &c.description, "What the case is about"});
-  v.section({"ply", "The flat rectangular ply", true}, true, [&] { visit_ply(v, c.ply); });
+  v.section({"ply", "The flat ply: a rectangle, or any outline", true}, true, [&] { visit_ply(v, fields); });
   optional_section(v, {"material", "The fabric; an object, or the name of a file that holds it"},
                    fields.material, MaterialFields(),
                    [&v](MaterialFields& material) { visit_material(v, material); });

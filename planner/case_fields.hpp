@@ -48,9 +48,12 @@ struct Table {
   Dimension abscissa = Dimension::strain;
 };
 
-using Target =
-    std::variant<double*, std::optional<double>*, int*, unsigned*, bool*, std::string*, Eigen::Vector2d*,
-                 Eigen::Vector3d*, std::optional<std::array<int, 2>>*, Extent*, Choice, ChoiceList, Table>;
+/// Points in order, three at least: corners of a polygon.
+using PointList = std::vector<Eigen::Vector2d>;
+
+using Target = std::variant<double*, std::optional<double>*, int*, unsigned*, bool*, std::string*,
+                            Eigen::Vector2d*, Eigen::Vector3d*, std::optional<std::array<int, 2>>*, Extent*,
+                            PointList*, Choice, ChoiceList, Table>;
 
 struct Field {
   std::string name;
@@ -155,6 +158,7 @@ struct CaseFields {
   Case value;
   std::optional<MaterialFields> material;
   std::optional<MoldFields> mold;
+  std::optional<double> width, height;  ///< of a rectangular ply
   std::optional<DampingFields> damping;
   FemOptions fem;
 };
@@ -163,6 +167,9 @@ inline constexpr const char* kCaseFormat = "drapeplan-case 1";
 
 /// States all fields of a case to `visitor`, in the order of the documentation.
 void visit_case(FieldVisitor& visitor, CaseFields& fields);
+
+/// Sets the ply's size from `width` and `height` or from its outline.
+void complete_ply(CaseFields& fields);
 
 /// The table that a mode's fields state; @param fields  without errors.
 StressTable stress_table(const CurveFields& fields);

@@ -25,6 +25,7 @@ CaseReading read_case(const std::filesystem::path& file, const std::vector<std::
   fields.value.name = file.stem().string();
   CaseReader reader(document);
   reader.read(fields);
+  complete_ply(fields);
   check_case(fields, reader);
   reading.errors.insert(reading.errors.end(), reader.errors().begin(), reader.errors().end());
   document.sort(reading.errors);

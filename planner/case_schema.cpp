@@ -98,6 +98,9 @@ struct TypeSchema {
     return fixed_list({{"type", "integer"}, {"minimum", 1}}, 2);
   }
   json operator()(Extent*) const { return fixed_list(fixed_list(number_schema(field), 2), 2); }
+  json operator()(PointList*) const {
+    return {{"type", "array"}, {"items", fixed_list(number_schema(field), 2)}, {"minItems", 3}};
+  }
   json operator()(const Choice& target) const { return {{"enum", target.words}}; }
   json operator()(const ChoiceList& target) const {
     return {{"type", "array"}, {"items", {{"enum", target.words}}}, {"minItems", 1}, {"uniqueItems", true}};

@@ -141,6 +141,20 @@ struct ValueReader {
     return good;
   }
 
+  bool points(const json& value, PointList& target) const {
+    constexpr size_t kFewest = 3;
+    if (!value.is_array() || value.size() < kFewest) {
+      return fail(
+          "expected a list of at least three points, e.g. [[\"0 mm\", \"0 mm\"], [\"90 mm\", \"0 mm\"], "
+          "[\"0 mm\", \"60 mm\"]]");
+    }
+    PointList read(value.size());
+    bool good = true;
+    for (size_t k = 0; k < value.size(); ++k) good = at(k).vector(value[k], read[k]) && good;
+    if (good) target = std::move(read);
+    return good;
+  }
+
   bool table(const json& value, const Table& target) const;
 };
 
@@ -267,6 +281,7 @@ bool read_value(const json& value, const Field& field, const ValueFault& fault) 
         return reader.at(1).integer(value[1], pair[1]) && first;
       },
       [&](Extent* target) { return reader.extent(value, *target); },
+      [&](PointList* target) { return reader.points(value, *target); },
       [&](const Choice& target) {
         int index = 0;
         if (!reader.word(value, target.words, index)) return false;
@@ -298,6 +313,11 @@ json write_value(const Field& field) {
       [&](Extent* target) {
         return json::array({lengths(Eigen::Vector2d(target->lower.x(), target->upper.x())),
                             lengths(Eigen::Vector2d(target->lower.y(), target->upper.y()))});
+      },
+      [&](PointList* target) {
+        json list = json::array();
+        for (const Eigen::Vector2d& point : *target) list.push_back(lengths(point));
+        return list.empty() ? json() : list;
       },
       [](const Choice& target) { return json(target.words[size_t(target.get())]); },
       [](const ChoiceList& target) {

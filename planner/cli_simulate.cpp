@@ -40,7 +40,7 @@ std::string summary(const RunReport& report, int nodes) {
   return text;
 }
 
-/// Displacements of the named points: of the node nearest to each.
+/// Displacements of the named points, of the node nearest to each; displacements and forces of the grips.
 json probes_json(const Case& value, const Model& model, const Snapshot& start, const Snapshot& end) {
   json probes = json::object();
   for (const Probe& probe : value.probes) {
@@ -51,6 +51,12 @@ json probes_json(const Case& value, const Model& model, const Snapshot& start, c
     }
     const Eigen::Vector3d u = end.position[nearest] - start.position[nearest];
     probes[probe.name] = {{"displacement", {u.x(), u.y(), u.z()}}};
+  }
+  for (size_t k = 0; k < model.scene().grips.size(); ++k) {
+    const Grip& grip = model.scene().grips[k];
+    const auto node = size_t(grip.nodes.front());
+    const Eigen::Vector3d u = end.position[node] - start.position[node], f = end.grip_force[k];
+    probes[grip.name] = {{"displacement", {u.x(), u.y(), u.z()}}, {"force", {f.x(), f.y(), f.z()}}};
   }
   return probes;
 }
@@ -72,6 +78,11 @@ int simulate_free(const Case& value, const SimulateOptions& options) {
     char line[200];
     std::snprintf(line, sizeof line, "%s moved by (%.3f, %.3f, %.3f) mm\n", name.c_str(),
                   1e3 * u[0].get<double>(), 1e3 * u[1].get<double>(), 1e3 * u[2].get<double>());
+    text += line;
+    if (!probe.contains("force")) continue;
+    const auto f = probe["force"];
+    std::snprintf(line, sizeof line, "%s pulls with (%.3f, %.3f, %.3f) N\n", name.c_str(), f[0].get<double>(),
+                  f[1].get<double>(), f[2].get<double>());
     text += line;
   }
   const int code = deliver(result, text, options.common, &value);

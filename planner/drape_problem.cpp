@@ -1,6 +1,7 @@
 #include "planner/drape_problem.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "planner/scoring.hpp"
@@ -10,17 +11,17 @@ namespace {
 
 constexpr int kReachStarts = 2;  // beside the targets; their agreement is reported
 
-bool on_edge(const Ply& ply, const Eigen::Vector2d& uv, Edge edge) {
+bool on_edge(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& uv, Edge edge) {
   const double slack = 1e-9;  // [m], round-off of mesh lines
   switch (edge) {
     case Edge::left:
-      return uv.x() <= -0.5 * ply.width + slack;
+      return uv.x() <= box.min().x() + slack;
     case Edge::right:
-      return uv.x() >= 0.5 * ply.width - slack;
+      return uv.x() >= box.max().x() - slack;
     case Edge::bottom:
-      return uv.y() <= -0.5 * ply.height + slack;
+      return uv.y() <= box.min().y() + slack;
     case Edge::top:
-      return uv.y() >= 0.5 * ply.height - slack;
+      return uv.y() >= box.max().y() - slack;
   }
   return false;
 }
@@ -41,17 +42,35 @@ Eigen::Vector2d start_of_joint(const Case& value, int gripper) {
   return value.ply.position + Eigen::Rotation2Dd(value.ply.angle) * value.grippers->place(gripper);
 }
 
+Mesh mesh_of(const Case& value, double mesh_size) {
+  std::vector<double> u,
+      v;  // lines through the pads, so that these cover the same piece of ply on every mesh
+  if (value.grippers) {
+    u = column_places(*value.grippers);
+    v = row_places(*value.grippers);
+  }
+  if (!value.ply.outline.empty()) return outline_mesh(value.ply.outline, mesh_size, u, v);
+  return rectangle_mesh(value.ply.width, value.ply.height, mesh_size, u, v);
+}
+
+/// Holds all nodes of the mesh's edge on the given piece.
+Grip grip_of(const GripOptions& options, const Mesh& mesh) {
+  Grip grip{options.name, {}, options.velocity, options.ramp};
+  const Eigen::Vector2d way = options.to - options.from;
+  for (const int node : mesh.outline) {
+    const Eigen::Vector2d offset = mesh.rest[size_t(node)] - options.from;
+    const double along = std::clamp(offset.dot(way) / way.squaredNorm(), 0.0, 1.0);
+    if ((offset - along * way).norm() <= kOnOutline) grip.nodes.push_back(node);
+  }
+  return grip;
+}
+
 }  // namespace
 
 Scene scene_of(const Case& value, const FemOptions& options) {
   Scene scene;
   const Ply& ply = value.ply;
-  if (value.grippers) {
-    scene.mesh = rectangle_mesh(ply.width, ply.height, options.mesh_size, column_places(*value.grippers),
-                                row_places(*value.grippers));
-  } else {
-    scene.mesh = rectangle_mesh(ply.width, ply.height, options.mesh_size);
-  }
+  scene.mesh = mesh_of(value, options.mesh_size);
   scene.fabric = value.material;
   scene.options = options;
   scene.position = ply.position;
@@ -63,9 +82,11 @@ Scene scene_of(const Case& value, const FemOptions& options) {
   scene.mold = value.mold;
   scene.friction = value.friction;
   scene.rig = value.grippers;
+  for (const GripOptions& grip : value.grips) scene.grips.push_back(grip_of(grip, scene.mesh));
+  const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
   for (int n = 0; n < scene.mesh.node_count(); ++n) {
     for (const Edge edge : value.clamped) {
-      if (!on_edge(ply, scene.mesh.rest[size_t(n)], edge)) continue;
+      if (!on_edge(box, scene.mesh.rest[size_t(n)], edge)) continue;
       scene.clamped.push_back(n);
       break;
     }

@@ -12,7 +12,7 @@ MapResult map_case(const Case& value) {
   constexpr double kDegrees = 180 / std::numbers::pi;
   MapResult result;
   result.net = map_ply(*value.mold, value.ply, *value.mapping);
-  result.boundary = prescribed_boundary(result.net);
+  result.boundary = prescribed_boundary(result.net, *value.mold, value.ply);
   result.corners = mapped_corners(result.net);
   const int grippers = value.grippers ? value.grippers->count() : 0;
   for (int k = 0; k < grippers; ++k) {
@@ -24,6 +24,8 @@ MapResult map_case(const Case& value) {
   double area = 0;
   for (size_t j = 0; j + 1 < v.size(); ++j) {
     for (size_t i = 0; i + 1 < u.size(); ++i) {
+      const Eigen::Vector2d middle(0.5 * (u[i] + u[i + 1]), 0.5 * (v[j] + v[j + 1]));
+      if (!value.ply.outline.empty() && !contains(value.ply.outline, middle)) continue;
       const double cell = (u[i + 1] - u[i]) * (v[j + 1] - v[j]);
       const double magnitude = kDegrees * std::abs(shear[i + j * (u.size() - 1)]);
       result.max_shear_deg = std::max(result.max_shear_deg, magnitude);
@@ -31,7 +33,7 @@ MapResult map_case(const Case& value) {
       area += cell;
     }
   }
-  result.mean_shear_deg /= area;
+  if (area > 0) result.mean_shear_deg /= area;  // not for a strip narrower than a cell
   return result;
 }
 

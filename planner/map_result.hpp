@@ -14,8 +14,8 @@ struct MapResult {
   Net net;
   std::vector<Eigen::Vector3d> targets;   ///< mapped places of the pad centres, in the order of the rig [m]
   std::vector<Eigen::Vector3d> boundary;  ///< closed [m]
-  std::vector<Eigen::Vector3d> corners;   ///< (-,-), (+,-), (+,+), (-,+) [m]
-  double max_shear_deg = 0;               ///< largest magnitude over the net's cells [deg]
+  std::vector<Eigen::Vector3d> corners;   ///< of the ply's bounding box: (-,-), (+,-), (+,+), (-,+) [m]
+  double max_shear_deg = 0;               ///< largest magnitude over the cells in the ply [deg]
   double mean_shear_deg = 0;              ///< mean magnitude over the ply's area [deg]
 };
 

@@ -431,5 +431,56 @@ TEST(PrescribedBoundary, RunsAroundThePlyCounterClockwiseAndCloses) {
   EXPECT_LE((corners[3] - Eigen::Vector3d(-0.15, 0.1, 0)).norm(), 1e-13);
 }
 
+Ply l_shaped_ply() {
+  Ply ply{0, 0, {0, 0}, 0};
+  ply.outline = {{-0.1, -0.1}, {-0.1, 0.2}, {0, 0.2}, {0, 0}, {0.15, 0}, {0.15, -0.1}};  // clockwise
+  return ply;
+}
+
+TEST(PrescribedBoundary, FollowsTheOutlineOfAPlyThatIsNoRectangle) {
+  const Ply ply = l_shaped_ply();
+  const Mold mold = inclined_plane(0);
+  const Net net = map_ply(mold, ply, {Generators::axes, {0, 0}, {0, 0}, 0.01});
+  EXPECT_NEAR(net.u.front(), -0.1, 1e-15);
+  EXPECT_NEAR(net.v.back(), 0.2, 1e-15);
+  const std::vector<Eigen::Vector3d> boundary = prescribed_boundary(net, mold, ply);
+  EXPECT_EQ(boundary.front(), boundary.back());
+  EXPECT_LE((boundary.front() - Eigen::Vector3d(-0.1, -0.1, 0)).norm(), 1e-12);
+  Polygon seen;
+  for (size_t k = 0; k + 1 < boundary.size(); ++k) {
+    seen.emplace_back(boundary[k].head<2>());
+    EXPECT_LE((boundary[k + 1] - boundary[k]).norm(), 0.01 + 1e-12);
+  }
+  EXPECT_NEAR(signed_area(seen), 0.045, 1e-12);  // and counter-clockwise
+  EXPECT_EQ(mapped_corners(net).size(), 4U);
+}
+
+TEST(PrescribedBoundary, OfAnOutlineThatIsTheRectangleLiesOnThatOfTheRectangle) {
+  const Mold mold = seed_mold();
+  Ply ply{0.4, 0.4, {0.225, 0.225}, 0};
+  const MappingOptions options{Generators::axes, {0.225, 0.225}, {0, 0}, 0.01};
+  const Net net = map_ply(mold, ply, options);
+  const std::vector<Eigen::Vector3d> known = prescribed_boundary(net, mold, ply);
+  ply.outline = {{-0.2, -0.2}, {0.2, -0.2}, {0.2, 0.2}, {-0.2, 0.2}};
+  const std::vector<Eigen::Vector3d> boundary = prescribed_boundary(net, mold, ply);
+  ASSERT_EQ(boundary.size(), known.size());
+  for (size_t k = 0; k < known.size(); ++k) EXPECT_LE((boundary[k] - known[k]).norm(), 1e-10);
+}
+
+TEST(Polygon, KnowsItsAreaItsInsideAndWhereItCrossesItself) {
+  const Polygon ply = l_shaped_ply().outline;
+  EXPECT_NEAR(signed_area(ply), -0.045, 1e-15);
+  EXPECT_NEAR(signed_area(counter_clockwise(ply)), 0.045, 1e-15);
+  EXPECT_EQ(counter_clockwise(ply).front(), ply.front());
+  EXPECT_TRUE(contains(ply, {-0.05, 0.1}));
+  EXPECT_FALSE(contains(ply, {0.05, 0.1}));
+  EXPECT_FALSE(contains(ply, {0.151, -0.05}));
+  EXPECT_TRUE(contains(ply, {0.151, -0.05}, 0.002));
+  EXPECT_FALSE(crossing_edges(ply).has_value());
+  EXPECT_EQ(crossing_edges({{0, 0}, {1, 1}, {1, 0}, {0, 1}}), (std::array<size_t, 2>{0, 2}));
+  EXPECT_EQ(crossing_edges({{0, 0}, {1, 0}, {1, 0}, {0, 1}}), (std::array<size_t, 2>{1, 1}));
+  EXPECT_TRUE(crossing_edges({{0, 0}, {1, 0}, {0.5, 0}, {0, 1}}).has_value());  // folds back
+}
+
 }  // namespace
 }  // namespace drapeplan

@@ -1,0 +1,13 @@
+// Mesh lines across a ply, for the generators of meshes.
+#pragma once
+
+#include <vector>
+
+namespace drapeplan {
+
+/// Increasing lines from `lower` to `upper` through `places` (increasing) [m]: equal cells between them, at
+/// most `mesh_size`. A margin narrower than half a cell joins the cell beside it.
+std::vector<double> mesh_lines(double lower, double upper, double mesh_size,
+                               const std::vector<double>& places);
+
+}  // namespace drapeplan
