@@ -21,6 +21,10 @@ double gyration_squared(double thickness, double area, double translation, doubl
 /// Largest angle per step of a pad on its actuator: its critical damping, explicit, is stable up to it.
 constexpr double kServoStep = 0.5;
 
+/// Share of a pad's surplus mass (over that of its nodes) in the stable step that its contact springs may
+/// use. The springs are some 30 times stiffer than those of free nodes then, and never govern the step.
+constexpr double kPadShare = 0.2;
+
 }  // namespace
 
 Model::Model(Scene scene) : scene_(std::move(scene)) {
@@ -39,26 +43,17 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
                            std::vector<double>(n, 0.0)};
   terms_.front()->add_stiffness(stiffness);
   if (scene_.gravity) terms_.push_back(make_gravity(unscaled, *scene_.gravity));
-  if (scene_.mold) {
-    std::vector<double> contact(stiffness.translation);
-    for (double& k : contact) k *= options.contact_stiffness;
-    terms_.push_back(
-        make_contact(*scene_.mold, scene_.friction, std::move(contact), scene_.fabric.thickness / 2));
-    terms_.back()->add_stiffness(stiffness);
-  }
 
   mass_.assign(padded(int(n)), 0.0);
   inertia_ = inverse_mass_ = inverse_inertia_ = mass_;
-  double largest = 0;  // bound of the highest squared frequency, Gershgorin's rows
+  gyration2_.resize(n);
   for (size_t k = 0; k < n; ++k) {
-    const double gyration2 =
+    gyration2_[k] =
         gyration_squared(scene_.fabric.thickness, area[k], stiffness.translation[k], stiffness.rotation[k]);
     mass_[k] = options.mass_scaling * unscaled[k];
-    inertia_[k] = gyration2 * mass_[k];
-    largest = std::max(largest,
-                       (stiffness.translation[k] + stiffness.coupling[k] / std::sqrt(gyration2)) / mass_[k]);
+    inertia_[k] = gyration2_[k] * mass_[k];
   }
-  stable_dt_ = 2 / std::sqrt(largest);
+  own_mass_.assign(mass_.begin(), mass_.begin() + std::ptrdiff_t(n));
   alpha_ = scene_.damping.value_or(0) / std::sqrt(options.mass_scaling);
 
   std::vector<int> held = scene_.clamped;
@@ -73,17 +68,62 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
       if (mass_[size_t(node)] == 0) throw std::invalid_argument("a node under a pad is clamped");
     }
     held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
-    if (std::sqrt(scene_.rig->actuator_stiffness / scene_.rig->pad_mass) * dt() > kServoStep) {
-      throw std::invalid_argument(
-          "the actuators are too stiff for the time step: lower grippers.actuator_stiffness or "
-          "raise grippers.pad_mass");
-    }
+  }
+  if (scene_.mold) add_contact(stiffness);
+  stable_dt_ = stable_dt(stiffness);
+  if (rig_ && std::sqrt(scene_.rig->actuator_stiffness / scene_.rig->pad_mass) * dt() > kServoStep) {
+    throw std::invalid_argument(
+        "the actuators are too stiff for the time step: lower grippers.actuator_stiffness or "
+        "raise grippers.pad_mass");
   }
   for (const int node : held) mass_[size_t(node)] = inertia_[size_t(node)] = 0;
   for (size_t k = 0; k < n; ++k) {
     inverse_mass_[k] = mass_[k] > 0 ? 1 / mass_[k] : 0;
     inverse_inertia_[k] = inertia_[k] > 0 ? 1 / inertia_[k] : 0;
   }
+}
+
+// Rows of a spring k with a dashpot c: played with the velocity of half a step before, a dashpot counts like
+// a spring 2 c / dt. With 2 / dt_1 = s_1, the largest root of s^2 = K / m + (c / m) s over all nodes, and c /
+// m at most 2 zeta w_c, the rows k + c s_1 are bounds for every step up to dt_1, and beyond it all the more.
+void Model::add_contact(NodalStiffness& stiffness) {
+  const FemOptions& options = scene_.options;
+  const size_t n = own_mass_.size();
+  ContactSprings springs{stiffness.translation, std::vector<double>(n), std::vector<double>(n)};
+  NodalStiffness both = stiffness;
+  double largest2 = 0;  // squared frequency of a node on its spring
+  for (size_t k = 0; k < n; ++k) {
+    springs.stiffness[k] *= options.contact_stiffness;
+    both.translation[k] += springs.stiffness[k];
+    largest2 = std::max(largest2, springs.stiffness[k] / own_mass_[k]);
+  }
+  const double damped = options.contact_damping * std::sqrt(largest2), undamped = 2 / stable_dt(both);
+  const double highest = damped + std::hypot(damped, undamped);
+  if (rig_) {
+    const std::vector<double> ratios = rig_->mass_ratios(mass_, inertia_);
+    for (size_t i = 0; i < ratios.size(); ++i) {
+      const auto k = size_t(rig_->tied()[i]);
+      const double surplus = (ratios[i] - 1) * own_mass_[k];
+      springs.stiffness[k] = std::max(springs.stiffness[k], kPadShare * surplus * highest * highest);
+      own_mass_[k] += surplus;
+    }
+  }
+  for (size_t k = 0; k < n; ++k) {
+    springs.damping[k] = 2 * options.contact_damping * std::sqrt(springs.stiffness[k] * own_mass_[k]);
+    springs.row[k] = springs.stiffness[k] + springs.damping[k] * highest;
+  }
+  terms_.push_back(
+      make_contact(*scene_.mold, scene_.friction, std::move(springs), 0.5 * scene_.fabric.thickness));
+  terms_.back()->add_stiffness(stiffness);
+}
+
+double Model::stable_dt(const NodalStiffness& stiffness) const {
+  double largest = 0;  // bound of the highest squared frequency, Gershgorin's rows
+  for (size_t k = 0; k < own_mass_.size(); ++k) {
+    const double coupling = stiffness.coupling[k] / std::sqrt(gyration2_[k]);
+    largest = std::max(largest, (stiffness.translation[k] + coupling) / own_mass_[k]);
+  }
+  return 2 / std::sqrt(largest);
 }
 
 std::vector<std::string> Model::term_names() const {

@@ -63,11 +63,16 @@ class Model {
   [[nodiscard]] State flat_state(double height) const;
 
  private:
+  void add_contact(NodalStiffness& stiffness);
+  [[nodiscard]] double stable_dt(const NodalStiffness& stiffness) const;
+
   Scene scene_;
   std::vector<std::unique_ptr<Term>> terms_;
   const Shell* shell_ = nullptr;
   std::optional<GripperRig> rig_;
   std::vector<double> mass_, inertia_, inverse_mass_, inverse_inertia_;
+  std::vector<double> own_mass_,
+      gyration2_;  ///< of all nodes, held ones too; tied ones as heavy as their pad
   double stable_dt_ = 0, alpha_ = 0;
 };
 

@@ -10,8 +10,8 @@ struct FemOptions {
   double time_scaling = 1;   ///< the schedule is played this many times faster than written
   double step_safety = 0.9;  ///< share of the estimated stable step
   double hourglass = 1;      ///< hourglass stiffness over the physical one of a fibre in compression
-  double contact_stiffness =
-      0.1;  ///< normal and tangential contact stiffness over the node's membrane stiffness
+  double contact_stiffness = 0.1;  ///< of a free node, over its membrane stiffness
+  double contact_damping = 0.2;    ///< share of the critical damping of a node on its contact spring
 };
 
 }  // namespace drapeplan

@@ -257,7 +257,9 @@ void visit_fem(FieldVisitor& v, FemOptions& f) {
   v.field({"hourglass", &f.hourglass, "Hourglass stiffness over the physical one of a fibre in compression",
            Dimension::none, from(0, 100)});
   v.field({"contact_stiffness", &f.contact_stiffness,
-           "Contact stiffness over the membrane stiffness of a node", Dimension::none, positive(100)});
+           "Contact stiffness of a free node over its membrane stiffness", Dimension::none, positive(100)});
+  v.field({"contact_damping", &f.contact_damping,
+           "Share of the critical damping of a node on its contact spring", Dimension::none, from(0, 1)});
 }
 
 void visit_physics(FieldVisitor& v, CaseFields& fields) {
