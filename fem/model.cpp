@@ -32,6 +32,9 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   const auto n = size_t(mesh.node_count());
   const FemOptions& options = scene_.options;
   if (scene_.friction && !scene_.mold) throw std::invalid_argument("friction needs a mold");
+  if (scene_.start == Start::on_mold && (!scene_.mold || scene_.rig)) {
+    throw std::invalid_argument("a ply that starts on the mold needs a mold, and no rig");
+  }
   const std::vector<double> area = nodal_areas(mesh);
   std::vector<double> unscaled(n);
   for (size_t k = 0; k < n; ++k) unscaled[k] = scene_.fabric.areal_density * area[k];
@@ -143,13 +146,20 @@ State Model::flat_state(double height) const {
     state.anchor = VectorField(n);
     state.stuck.assign(padded(n), 0.0);
   }
+  const Eigen::Vector2d& place = scene_.position;
+  Eigen::Vector3d origin(place.x(), place.y(), height), normal = Eigen::Vector3d::UnitZ();
+  Eigen::Quaterniond lean = Eigen::Quaterniond::Identity();
+  if (scene_.start == Start::on_mold) {
+    normal = scene_.mold->normal(place.x(), place.y());
+    origin = scene_.mold->point(place.x(), place.y()) + 0.5 * scene_.fabric.thickness * normal;
+    lean.setFromTwoVectors(Eigen::Vector3d::UnitZ(), normal);
+  }
   const Eigen::Rotation2Dd turn(scene_.angle);
   for (size_t k = 0; k < padded(n); ++k) {  // padding repeats the last node and has no mass
-    const Eigen::Vector2d xy = scene_.position + turn * scene_.mesh.rest[std::min(k, size_t(n) - 1)];
-    state.x.x[k] = xy.x();
-    state.x.y[k] = xy.y();
-    state.x.z[k] = height;
-    state.d.z[k] = 1;
+    const Eigen::Vector2d uv = turn * scene_.mesh.rest[std::min(k, size_t(n) - 1)];
+    const Eigen::Vector3d x = origin + lean * Eigen::Vector3d(uv.x(), uv.y(), 0);
+    state.x.x[k] = x.x(), state.x.y[k] = x.y(), state.x.z[k] = x.z();
+    state.d.x[k] = normal.x(), state.d.y[k] = normal.y(), state.d.z[k] = normal.z();
   }
   if (rig_) rig_->place(state, height);
   return state;

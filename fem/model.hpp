@@ -16,6 +16,12 @@
 
 namespace drapeplan {
 
+/// How a ply without a rig starts.
+enum class Start {
+  level,    ///< level at `start_height`
+  on_mold,  ///< in the mold's tangent plane at `position`, its underside touching there
+};
+
 /// What is there. Parts that are absent add no term, no memory and no work.
 struct Scene {
   Mesh mesh;
@@ -24,6 +30,7 @@ struct Scene {
   Eigen::Vector2d position{0, 0};  ///< x-y of the ply frame's origin in the flat start [m]
   double angle = 0;                ///< warp direction from +x in the flat start [rad]
   double start_height = 0;         ///< of the flat ply without a rig; with a rig the schedule says it [m]
+  Start start = Start::level;      ///< `on_mold` needs a mold and no rig
   std::optional<double> gravity;   ///< [m/s^2]
   std::optional<double> damping;   ///< mass-proportional rate alpha of the unscaled ply [1/s]
   std::optional<Mold> mold;
@@ -59,7 +66,7 @@ class Model {
   [[nodiscard]] const std::vector<double>& inverse_mass() const { return inverse_mass_; }
   [[nodiscard]] const std::vector<double>& inverse_inertia() const { return inverse_inertia_; }
 
-  /// The flat ply at rest at `height` [m].
+  /// The flat ply at rest, level at `height` [m] or on the mold, as the scene says.
   [[nodiscard]] State flat_state(double height) const;
 
  private:

@@ -42,13 +42,16 @@ void optional_section(FieldVisitor& visitor, const Section& section, std::option
   if (present) slot = std::move(value);
 }
 
-void visit_ply(FieldVisitor& v, Ply& ply) {
+void visit_ply(FieldVisitor& v, Ply& ply, Start& start) {
   v.field(
       {"width", &ply.width, "Size along the warp (u)", Dimension::length, positive(kLargestLength), true});
   v.field(
       {"height", &ply.height, "Size along the weft (v)", Dimension::length, positive(kLargestLength), true});
   v.field({"position", &ply.position, "Place (x, y) of the ply's middle before draping", Dimension::length});
   v.field({"angle", &ply.angle, "Warp direction, from +x towards +y", Dimension::angle});
+  v.field({"start", choice(start, {"level", "on_mold"}),
+           "Without grippers: `level` at start_height, or laid `on_mold`, flat in its tangent plane at "
+           "`position`"});
 }
 
 void visit_curve(FieldVisitor& v, CurveFields& fields, Dimension abscissa) {
@@ -330,7 +333,7 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
   v.list(references);
   v.field({"start_height",
            &c.start_height,
-           "Height of the flat ply without grippers",
+           "Height of the level ply without grippers",
            Dimension::length,
            from(-kLargestLength, kLargestLength),
            false,
@@ -355,7 +358,7 @@ void visit_case(FieldVisitor& v, CaseFields& fields) {
   v.field(
       {"name", &c.name, "Short name in tables and reports", Dimension::none, {}, false, "the file's name"});
   v.field({"description", &c.description, "What the case is about"});
-  v.section({"ply", "The flat rectangular ply", true}, true, [&] { visit_ply(v, c.ply); });
+  v.section({"ply", "The flat rectangular ply", true}, true, [&] { visit_ply(v, c.ply, c.start); });
   optional_section(v, {"material", "The fabric; an object, or the name of a file that holds it"},
                    fields.material, MaterialFields(),
                    [&v](MaterialFields& material) { visit_material(v, material); });

@@ -56,6 +56,7 @@ Scene scene_of(const Case& value, const FemOptions& options) {
   scene.position = ply.position;
   scene.angle = ply.angle;
   scene.start_height = value.start_height;
+  scene.start = value.start;
   scene.gravity = value.gravity;
   scene.damping = value.damping;
   scene.mold = value.mold;
