@@ -11,16 +11,11 @@
 #include "fem/mesh.hpp"
 #include "fem/options.hpp"
 #include "fem/shell.hpp"
+#include "fem/start.hpp"
 #include "fem/term.hpp"
 #include "mapping/mold.hpp"
 
 namespace drapeplan {
-
-/// How a ply without a rig starts.
-enum class Start {
-  level,    ///< level at `start_height`
-  on_mold,  ///< in the mold's tangent plane at `position`, its underside touching there
-};
 
 /// What is there. Parts that are absent add no term, no memory and no work.
 struct Scene {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "fem/fabric.hpp"
-#include "fem/model.hpp"
 #include "fem/options.hpp"
 #include "fem/rig.hpp"
+#include "fem/start.hpp"
 #include "mapping/mold.hpp"
 #include "mapping/net.hpp"
 #include "planner/score.hpp"

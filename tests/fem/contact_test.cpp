@@ -69,9 +69,9 @@ TEST(Contact, DoesNoWorkOnANodeThatIsDraggedAroundALoop) {
   const Mold mold = seed_mold();
   Touch touch(mold);
   constexpr int kPoints = 20000;
-  const auto place = [&](double turn) {  // a loop over the steep corner, deeper on one side
-    const Eigen::Vector2d at(0.05 + 0.04 * std::cos(turn), 0.05 + 0.04 * std::sin(turn));
-    const double depth = 1e-5 * (1 + 0.5 * std::cos(turn + 1));
+  const auto place = [&](double turn) {  // a loop at 54 degrees of slope, deeper on one side
+    const Eigen::Vector2d at(0.01 + 0.005 * std::cos(turn), 0.01 + 0.005 * std::sin(turn));
+    const double depth = 1e-4 * (1 + 0.5 * std::cos(turn + 1));
     return Eigen::Vector3d(mold.point(at.x(), at.y()) + (kHalf - depth) * mold.normal(at.x(), at.y()));
   };
   double sum = 0, size = 0;
@@ -82,8 +82,8 @@ TEST(Contact, DoesNoWorkOnANodeThatIsDraggedAroundALoop) {
     sum += work;
     size += std::abs(work);
   }
-  EXPECT_GT(size, 1e-11);
-  EXPECT_LE(std::abs(sum), 1e-4 * size);
+  EXPECT_GT(size, 1e-9);
+  EXPECT_LE(std::abs(sum), 1e-5 * size);
 }
 
 TEST(Contact, PressesAndNeverPulls) {
