@@ -1,6 +1,7 @@
 #include "fem/fabric.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace drapeplan {
 
@@ -27,6 +28,21 @@ double Curve::smallest_slope() const {
     if (slope(k) > 0 && (smallest == 0 || slope(k) < smallest)) smallest = slope(k);
   }
   return smallest;
+}
+
+double StressTable::operator()(double strain, double rate, double floor) const {
+  if (!rate_dependent() || !(rate > rates.front())) return curves.front()(strain);
+  if (rate >= rates.back()) return curves.back()(strain);
+  const auto k = size_t(std::upper_bound(rates.begin(), rates.end(), rate) - rates.begin());
+  const double slow = std::log1p(rates[k - 1] / floor), fast = std::log1p(rates[k] / floor);
+  const double share = (std::log1p(rate / floor) - slow) / (fast - slow);
+  return (1 - share) * curves[k - 1](strain) + share * curves[k](strain);
+}
+
+double StressTable::largest_slope() const {
+  double largest = 0;
+  for (const Curve& curve : curves) largest = std::max(largest, curve.largest_slope());
+  return largest;
 }
 
 }  // namespace drapeplan

@@ -152,9 +152,9 @@ double GripperRig::actuator_force(const State& state, const RigDrive& drive, int
 }
 
 /// Velocities at t + dt/2 as if there were no constraints.
-void GripperRig::free_velocities(State& state, const RigDrive& drive, double dt, double alpha, RigScratch& s,
-                                 RigRecord& record) const {
-  const double keep = (1 - 0.5 * alpha * dt) / (1 + 0.5 * alpha * dt), gain = dt / (1 + 0.5 * alpha * dt);
+void GripperRig::free_velocities(State& state, const RigDrive& drive, double alpha, RigScratch& s) const {
+  const double h = state.kick_time();
+  const double keep = (1 - 0.5 * alpha * h) / (1 + 0.5 * alpha * h), gain = h / (1 + 0.5 * alpha * h);
   for (size_t g = 0; g < pads_.size(); ++g) {
     const Pad& body = pads_[g];
     const PadState& pad = state.pads[g];
@@ -167,7 +167,7 @@ void GripperRig::free_velocities(State& state, const RigDrive& drive, double dt,
     }
     s.arm[g] = rig_.joint_offset * normal;
     const double push = actuator_force(state, drive, int(g));
-    record.largest_force = std::max(record.largest_force, std::abs(push));
+    state.record.actuator_force = std::max(state.record.actuator_force, std::abs(push));
     s.actuator[g] = push;
     force.z() += push;
     moment += s.arm[g].cross(Vector3d(0, 0, push));
@@ -191,7 +191,8 @@ Vector3d GripperRig::stop_moment(const Vector3d& normal) const {
 
 /// Lengths and coordinates at t + dt less what they should be, for the velocities in s.next. Returns the
 /// largest.
-double GripperRig::residuals(const State& state, double dt, RigScratch& s) const {
+double GripperRig::residuals(const State& state, RigScratch& s) const {
+  const double dt = state.dt;
   for (size_t g = 0; g < pads_.size(); ++g) {
     s.next[g].centre = state.pads[g].centre + dt * s.next[g].velocity;
     s.next_arm[g] = turned(dt * s.next[g].angular_velocity, s.arm[g]);
@@ -235,7 +236,7 @@ void GripperRig::factorise(RigScratch& s) const {
 }
 
 /// Newton's method for the impulses that meet all rows at t + dt; the matrix stays that of t.
-void GripperRig::meet_constraints(const State& state, double dt, RigScratch& s, RigRecord& record) const {
+void GripperRig::meet_constraints(State& state, RigScratch& s) const {
   for (size_t k = 0; k < rows_.size(); ++k) {
     const Row& row = rows_[k];
     const auto i = size_t(row.i);
@@ -249,9 +250,9 @@ void GripperRig::meet_constraints(const State& state, double dt, RigScratch& s, 
   double error = 0;
   const double round_off = 4 * std::numeric_limits<double>::epsilon() * state.pads.front().centre.norm();
   for (int iteration = 0; iteration < kConstraintIterations; ++iteration) {
-    error = residuals(state, dt, s);
+    error = residuals(state, s);
     if (error <= kConstraintTolerance * rig_.spacing + round_off) {
-      record.largest_link_error = std::max(record.largest_link_error, error);
+      state.record.link_error = std::max(state.record.link_error, error);
       return;
     }
     for (size_t k = 0; k < rows_.size(); ++k) {  // forward
@@ -265,14 +266,14 @@ void GripperRig::meet_constraints(const State& state, double dt, RigScratch& s, 
         s.residual[l] -= s.factor[start_[k] + l] * s.residual[k];
     }
     for (size_t k = 0; k < rows_.size(); ++k) {
-      const double impulse = -s.residual[k] / dt;
+      const double impulse = -s.residual[k] / state.dt;
       s.impulse[k] += impulse;
       push(s, rows_[k].i, impulse * s.direction[k]);
       if (rows_[k].j >= 0) push(s, rows_[k].j, -impulse * s.direction[k]);
     }
   }
-  record.largest_link_error = std::max(record.largest_link_error, error);
-  record.converged = false;
+  state.record.link_error = std::max(state.record.link_error, error);
+  s.converged = false;
 }
 
 /// Impulse [N s] on the joint of gripper g.
@@ -281,20 +282,20 @@ void GripperRig::push(RigScratch& s, int g, const Vector3d& impulse) const {
   s.next[size_t(g)].angular_velocity += s.arm[size_t(g)].cross(impulse) / pads_[size_t(g)].inertia;
 }
 
-void GripperRig::kick(State& state, const RigDrive& drive, double dt, double alpha, RigScratch& s,
-                      RigRecord& record) const {
-  free_velocities(state, drive, dt, alpha, s, record);
-  meet_constraints(state, dt, s, record);
+void GripperRig::kick(State& state, const RigDrive& drive, double alpha, RigScratch& s) const {
+  free_velocities(state, drive, alpha, s);
+  meet_constraints(state, s);
+  const double h = state.kick_time();
   for (size_t g = 0; g < pads_.size(); ++g) {
     PadState& pad = state.pads[g];
     const Vector3d mean_v = 0.5 * (pad.velocity + s.next[g].velocity);
     const Vector3d mean_w = 0.5 * (pad.angular_velocity + s.next[g].angular_velocity);
     const Vector3d joint_v = mean_v + mean_w.cross(s.arm[g]);
-    book(state, Book::actuator, dt * s.actuator[g] * joint_v.z());
-    book(state, Book::stop, dt * s.stop[g].dot(mean_w));
+    book(state, Book::actuator, h * s.actuator[g] * joint_v.z());
+    book(state, Book::stop, h * s.stop[g].dot(mean_w));
     book(
         state, Book::damping,
-        -dt * alpha *
+        -h * alpha *
             (pads_[g].mass * s.free_mean_v[g].dot(mean_v) + pads_[g].inertia * s.free_mean_w[g].dot(mean_w)));
     const Eigen::Matrix3d turn = pad.rotation.toRotationMatrix();
     for (auto k = size_t(pads_[g].first); k < size_t(pads_[g].last); ++k) {
@@ -313,7 +314,8 @@ void GripperRig::kick(State& state, const RigDrive& drive, double dt, double alp
   book(state, Book::interlink, work);
 }
 
-void GripperRig::drift(State& state, double dt) const {
+void GripperRig::drift(State& state) const {
+  const double dt = state.dt;
   for (size_t g = 0; g < pads_.size(); ++g) {
     PadState& pad = state.pads[g];
     pad.centre += dt * pad.velocity;

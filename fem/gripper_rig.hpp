@@ -17,13 +17,6 @@
 
 namespace drapeplan {
 
-/// What the rig measures of itself over a run.
-struct RigRecord {
-  double largest_force = 0;       ///< of an actuator [N]
-  double largest_link_error = 0;  ///< [m]
-  bool converged = true;          ///< every step met the constraints
-};
-
 /// Scratch of one run: sums over tied nodes, free and mean velocities, the constraint system.
 struct RigScratch {
   std::vector<Eigen::Vector3d> force, moment;  ///< in: on tied nodes and their directors [N], [N m]
@@ -37,6 +30,7 @@ struct RigScratch {
   std::vector<double> actuator;                   ///< forces [N]
   std::vector<Eigen::Vector3d> direction;         ///< of each constraint row
   std::vector<double> residual, impulse, factor;  ///< of each row; envelope of the Cholesky factor
+  bool converged = true;                          ///< every step so far met the constraints
 };
 
 /// The schedule as the simulation plays it.
@@ -70,12 +64,12 @@ class GripperRig {
   [[nodiscard]] RigScratch scratch() const;
 
   /// One step for the pads: from nodal forces to pad velocities at t + dt/2 that meet all constraints at t +
-  /// dt. Books the work of damping (rate alpha), actuators, interlinks and stops into state.work.
-  void kick(State& state, const RigDrive& drive, double dt, double alpha, RigScratch& scratch,
-            RigRecord& record) const;
+  /// dt. Books the work of damping (rate alpha), actuators, interlinks and stops into state.work, and the
+  /// largest actuator force and link error into state.record.
+  void kick(State& state, const RigDrive& drive, double alpha, RigScratch& scratch) const;
 
   /// Moves pads to t + dt and their nodes with them.
-  void drift(State& state, double dt) const;
+  void drift(State& state) const;
 
   [[nodiscard]] double kinetic_energy(const State& state) const;
   [[nodiscard]] Eigen::Vector3d joint(const PadState& pad) const {
@@ -103,11 +97,10 @@ class GripperRig {
     double sign = 1;
   };
 
-  void free_velocities(State& state, const RigDrive& drive, double dt, double alpha, RigScratch& scratch,
-                       RigRecord& record) const;
-  void meet_constraints(const State& state, double dt, RigScratch& scratch, RigRecord& record) const;
+  void free_velocities(State& state, const RigDrive& drive, double alpha, RigScratch& scratch) const;
+  void meet_constraints(State& state, RigScratch& scratch) const;
   void factorise(RigScratch& scratch) const;
-  double residuals(const State& state, double dt, RigScratch& scratch) const;
+  double residuals(const State& state, RigScratch& scratch) const;
   void push(RigScratch& scratch, int g, const Eigen::Vector3d& impulse) const;
   [[nodiscard]] Eigen::Vector3d stop_moment(const Eigen::Vector3d& normal) const;
 

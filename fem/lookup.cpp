@@ -25,6 +25,12 @@ Lookup::Lookup(const std::function<double(double)>& f, double lower, double uppe
   }
   const double origin = below < intervals ? energy_[size_t(below)] : sum;
   for (double& e : energy_) e -= origin;
+  for (int k = 0; k < intervals; ++k) {
+    double steepest = 0;
+    for (int l = std::max(0, k - kLookAhead); l <= std::min(intervals - 1, k + kLookAhead); ++l)
+      steepest = std::max(steepest, std::abs(line_[2 * size_t(l) + 1]));
+    steepest_.push_back(steepest);
+  }
 }
 
 double Lookup::integral(double at) const {

@@ -35,10 +35,23 @@ class Lookup {
     }
     return Lanes(intercept, stdx::vector_aligned) + Lanes(slope, stdx::vector_aligned) * at;
   }
+  /// Steepest slope within kLookAhead pieces of `at`: what a stable step must bear until it is chosen anew.
+  [[nodiscard]] Lanes steepest_near(const Lanes& at) const {
+    namespace stdx = std::experimental;
+    const Lanes place = stdx::clamp((at - Lanes(lower_)) * Lanes(per_step_), Lanes(0.0), Lanes(last_));
+    return Lanes([&](auto l) { return steepest_[size_t(int(place[size_t(l)]))]; });
+  }
+  static constexpr int kLookAhead = 5;
   /// Integral of the function from 0 to `at`.
   [[nodiscard]] double integral(double at) const;
   /// Steepest piece.
   [[nodiscard]] double largest_slope() const;
+
+  /// The grid, for tables built of several lookups: intercept and slope of each piece; first place; pieces
+  /// per unit.
+  [[nodiscard]] const std::vector<double>& lines() const { return line_; }
+  [[nodiscard]] double lower() const { return lower_; }
+  [[nodiscard]] double per_step() const { return per_step_; }
 
  private:
   [[nodiscard]] size_t piece(double at) const {
@@ -47,6 +60,7 @@ class Lookup {
   }
   double lower_ = 0, per_step_ = 1, last_ = 0;  ///< last_: index of the last piece
   std::vector<double> line_;                    ///< intercept and slope of each piece
+  std::vector<double> steepest_;                ///< slope near each piece
   std::vector<double> energy_;                  ///< integral from 0 to the start of each piece
 };
 

@@ -1,11 +1,14 @@
 #include "fem/model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "fem/contact.hpp"
+#include "fem/hash.hpp"
 
 namespace drapeplan {
 namespace {
@@ -25,6 +28,14 @@ constexpr double kServoStep = 0.5;
 /// use. The springs are some 30 times stiffer than those of free nodes then, and never govern the step.
 constexpr double kPadShare = 0.2;
 
+/// Largest frequency with contact over that without it. Played with the velocity of half a step before, a
+/// dashpot c counts like a spring 2 c / dt. With s = 2 / dt, spring a K of a node's row K and share z of its
+/// critical damping, s^2 = K / m (1 + a) + 2 z sqrt(a K / m) s; the larger root, over sqrt(K / m).
+double contact_rise(const FemOptions& options) {
+  const double damped = options.contact_damping * std::sqrt(options.contact_stiffness);
+  return damped + std::sqrt(damped * damped + 1 + options.contact_stiffness);
+}
+
 }  // namespace
 
 Model::Model(Scene scene) : scene_(std::move(scene)) {
@@ -42,22 +53,28 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   auto shell = make_shell(mesh, scene_.fabric, options);
   shell_ = shell.get();
   terms_.push_back(std::move(shell));
-  NodalStiffness stiffness{std::vector<double>(n, 0.0), std::vector<double>(n, 0.0),
-                           std::vector<double>(n, 0.0)};
+  NodalStiffness stiffness(mesh.node_count());
   terms_.front()->add_stiffness(stiffness);
   if (scene_.gravity) terms_.push_back(make_gravity(unscaled, *scene_.gravity));
 
   mass_.assign(padded(int(n)), 0.0);
   inertia_ = inverse_mass_ = inverse_inertia_ = mass_;
   gyration2_.resize(n);
+  own_mass_.resize(n);
+  // Mass per stiffness below which the target step would be missed.
+  const double rise = scene_.mold ? contact_rise(options) : 1;
+  const double needed = std::pow(rise * options.target_step / (2 * options.step_safety), 2);
   for (size_t k = 0; k < n; ++k) {
     gyration2_[k] =
         gyration_squared(scene_.fabric.thickness, area[k], stiffness.translation[k], stiffness.rotation[k]);
-    mass_[k] = options.mass_scaling * unscaled[k];
+    const double row = stiffness.translation[k] + stiffness.coupling[k] / std::sqrt(gyration2_[k]);
+    own_mass_[k] = std::max(options.mass_scaling * unscaled[k], needed * row);
+    mass_[k] = own_mass_[k];
     inertia_[k] = gyration2_[k] * mass_[k];
   }
-  own_mass_.assign(mass_.begin(), mass_.begin() + std::ptrdiff_t(n));
-  alpha_ = scene_.damping.value_or(0) / std::sqrt(options.mass_scaling);
+  const double scale = std::accumulate(own_mass_.begin(), own_mass_.end(), 0.0) /
+                       std::accumulate(unscaled.begin(), unscaled.end(), 0.0);
+  alpha_ = scene_.damping.value_or(0) / std::sqrt(scale);
 
   std::vector<int> held = scene_.clamped;
   for (const int node : held) mass_[size_t(node)] = 0;
@@ -86,22 +103,14 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   }
 }
 
-// Rows of a spring k with a dashpot c: played with the velocity of half a step before, a dashpot counts like
-// a spring 2 c / dt. With 2 / dt_1 = s_1, the largest root of s^2 = K / m + (c / m) s over all nodes, and c /
-// m at most 2 zeta w_c, the rows k + c s_1 are bounds for every step up to dt_1, and beyond it all the more.
+// Rows of a spring k with a dashpot c are k + c s_1, with s_1 = 2 / dt_1 of the stable step dt_1: see
+// contact_rise. A longer step than dt_1 only makes them safer, a shorter one needs them less.
 void Model::add_contact(NodalStiffness& stiffness) {
   const FemOptions& options = scene_.options;
   const size_t n = own_mass_.size();
+  const double highest = contact_rise(options) * 2 / stable_dt(stiffness);
   ContactSprings springs{stiffness.translation, std::vector<double>(n), std::vector<double>(n)};
-  NodalStiffness both = stiffness;
-  double largest2 = 0;  // squared frequency of a node on its spring
-  for (size_t k = 0; k < n; ++k) {
-    springs.stiffness[k] *= options.contact_stiffness;
-    both.translation[k] += springs.stiffness[k];
-    largest2 = std::max(largest2, springs.stiffness[k] / own_mass_[k]);
-  }
-  const double damped = options.contact_damping * std::sqrt(largest2), undamped = 2 / stable_dt(both);
-  const double highest = damped + std::hypot(damped, undamped);
+  for (double& k : springs.stiffness) k *= options.contact_stiffness;
   if (rig_) {
     const std::vector<double> ratios = rig_->mass_ratios(mass_, inertia_);
     for (size_t i = 0; i < ratios.size(); ++i) {
@@ -121,12 +130,39 @@ void Model::add_contact(NodalStiffness& stiffness) {
 }
 
 double Model::stable_dt(const NodalStiffness& stiffness) const {
-  double largest = 0;  // bound of the highest squared frequency, Gershgorin's rows
+  double largest = 0;  // bound of the highest squared frequency
   for (size_t k = 0; k < own_mass_.size(); ++k) {
     const double coupling = stiffness.coupling[k] / std::sqrt(gyration2_[k]);
-    largest = std::max(largest, (stiffness.translation[k] + coupling) / own_mass_[k]);
+    const double row = std::max(stiffness.translation[k], stiffness.rotation[k] / gyration2_[k]) + coupling;
+    largest = std::max(largest, row / own_mass_[k]);
   }
   return 2 / std::sqrt(largest);
+}
+
+double Model::free_mass() const {
+  return std::accumulate(mass_.begin(), mass_.end(), 0.0);
+}
+
+std::uint64_t Model::fingerprint() const {
+  Fnv1a hash;
+  const auto add = [&hash](const auto& values) {
+    for (const double value : values) hash.add(value);
+  };
+  for (const Eigen::Vector2d& place : scene_.mesh.rest) add(place);
+  for (const auto& quad : scene_.mesh.quads) add(quad);
+  for (const auto* list : {&own_mass_, &gyration2_, &mass_}) add(*list);
+  for (const StressTable* table :
+       {&scene_.fabric.tension, &scene_.fabric.compression, &scene_.fabric.shear}) {
+    add(table->rates);
+    for (const Curve& curve : table->curves) add(curve.strain), add(curve.stress);
+  }
+  const FemOptions& o = scene_.options;
+  add(std::array{stable_dt_, alpha_, o.time_scaling, o.step_safety, double(o.section_points),
+                 double(o.step_interval), o.hourglass, o.contact_stiffness, o.contact_damping,
+                 scene_.gravity.value_or(0), scene_.friction.value_or(-1), scene_.position.x(),
+                 scene_.position.y(), scene_.angle});
+  for (const std::string& name : term_names()) hash.add(name);
+  return hash.value();
 }
 
 std::vector<std::string> Model::term_names() const {
@@ -146,6 +182,8 @@ State Model::flat_state(double height) const {
     state.anchor = VectorField(n);
     state.stuck.assign(padded(n), 0.0);
   }
+  state.lagged.assign(shell_->lagged_count(), 0.0);
+  state.dt = state.dt_before = dt();
   const Eigen::Vector2d& place = scene_.position;
   Eigen::Vector3d origin(place.x(), place.y(), height), normal = Eigen::Vector3d::UnitZ();
   Eigen::Quaterniond lean = Eigen::Quaterniond::Identity();

@@ -31,7 +31,8 @@ struct Scene {
   std::optional<Mold> mold;
   std::optional<double> friction;  ///< needs a mold
   std::optional<RigOptions> rig;
-  std::vector<int> clamped;  ///< nodes that never move or turn
+  std::vector<int> clamped;           ///< nodes that never move or turn
+  std::optional<RestCriterion> rest;  ///< when a run may end before its time
 };
 
 /// The discrete system: masses, terms, stable step.
@@ -47,11 +48,15 @@ class Model {
   [[nodiscard]] const std::optional<GripperRig>& rig() const { return rig_; }
   [[nodiscard]] std::vector<std::string> term_names() const;
 
-  /// Step that is played: step_safety times the estimated stable one [s].
-  [[nodiscard]] double dt() const { return scene_.options.step_safety * stable_dt_; }
+  /// Stable step for all strains that the laws allow [s]; see stable_step() for that of a state.
   [[nodiscard]] double stable_dt() const { return stable_dt_; }
+  /// The step played where it does not change with the state: step_safety times stable_dt [s].
+  [[nodiscard]] double dt() const { return scene_.options.step_safety * stable_dt_; }
+  /// Largest stable step for given stiffness rows [s]: Gershgorin's rows over the nodes' own masses. Nodes
+  /// that are tied or clamped count as well: what holds them only lowers frequencies.
+  [[nodiscard]] double stable_dt(const NodalStiffness& stiffness) const;
   /// Damping rate on the scaled mass [1/s]: with a mass s times larger, modes are sqrt(s) times slower, and
-  /// so is what damps them critically.
+  /// so is what damps them critically. s: of the whole ply.
   [[nodiscard]] double alpha() const { return alpha_; }
 
   /// Scaled masses [kg] and director inertias [kg m^2] of free nodes; 0 for clamped and tied ones; padded.
@@ -61,20 +66,25 @@ class Model {
   [[nodiscard]] const std::vector<double>& inverse_mass() const { return inverse_mass_; }
   [[nodiscard]] const std::vector<double>& inverse_inertia() const { return inverse_inertia_; }
 
+  /// Of nodes that are neither tied nor clamped, scaled [kg].
+  [[nodiscard]] double free_mass() const;
+
+  /// Hash of all that a run depends on: a saved state fits a model with the same one.
+  [[nodiscard]] std::uint64_t fingerprint() const;
+
   /// The flat ply at rest, level at `height` [m] or on the mold, as the scene says.
   [[nodiscard]] State flat_state(double height) const;
 
  private:
   void add_contact(NodalStiffness& stiffness);
-  [[nodiscard]] double stable_dt(const NodalStiffness& stiffness) const;
 
   Scene scene_;
   std::vector<std::unique_ptr<Term>> terms_;
   const Shell* shell_ = nullptr;
   std::optional<GripperRig> rig_;
   std::vector<double> mass_, inertia_, inverse_mass_, inverse_inertia_;
-  std::vector<double> own_mass_,
-      gyration2_;  ///< of all nodes, held ones too; tied ones as heavy as their pad
+  std::vector<double> own_mass_, gyration2_;  ///< of all nodes, held ones too [kg], [m^2]; a tied node's mass
+                                              ///< is its share of its pad
   double stable_dt_ = 0, alpha_ = 0;
 };
 

@@ -11,20 +11,22 @@ class Monitor {
  public:
   explicit Monitor(const Model& model) : model_(model) {}
 
-  /// Looks at a state. Returns false, with the reason in the result, if the run cannot go on.
-  bool look(const State& state, RunResult& result);
+  /// Looks at a state and notes the worst in its record. Returns false, with the reason in the report, if the
+  /// run cannot go on.
+  bool look(State& state, RunReport& report);
 
-  /// Kinetic over internal energy of the state counts for the report from now on.
-  void note_kinetic_ratio(const State& state, RunResult& result) const;
+  /// Kinetic and hourglass energy against internal energy, into the state's record.
+  void compare_energies(State& state) const;
 
-  /// Stored hourglass energy and contact state of the end.
-  void close(const State& state, RunResult& result) const;
+  /// What only the end tells, and the record.
+  void close(State& state, RunReport& report) const;
 
  private:
-  static bool fail(const State& state, const std::string& what, RunResult& result);
+  void note_penetration(State& state) const;
+  static bool fail(const State& state, const std::string& what, RunReport& report);
 
   const Model& model_;
-  double largest_balance_ = 0;
+  Snapshot strains_;  ///< kept, so that looking allocates nothing after the first time
 };
 
 /// Energies of a state, without the figures that need a history.

@@ -7,11 +7,20 @@ struct FemOptions {
   double mesh_size = 0.010;  ///< largest element edge [m]
   int section_points = 3;    ///< through the thickness: 1, 3 or 5
   double mass_scaling = 20;  ///< factor on the mass; gravity acts on the unscaled mass (seed: up to 20)
+  double target_step = 0;    ///< mass is added where the step would be smaller [s]; 0: nowhere
   double time_scaling = 1;   ///< the schedule is played this many times faster than written
   double step_safety = 0.9;  ///< share of the estimated stable step
+  int step_interval = 32;    ///< steps between two choices of the step; 0: one step, safe for all strains
+  bool rates = true;         ///< false: slowest curves only, whatever tables the material has
   double hourglass = 1;      ///< hourglass stiffness over the physical one of a fibre in compression
   double contact_stiffness = 0.1;  ///< of a free node, over its membrane stiffness
   double contact_damping = 0.2;    ///< share of the critical damping of a node on its contact spring
+};
+
+/// A ply is at rest when its r.m.s. speed has stayed below `speed` for the time `hold` (simulation's clock).
+struct RestCriterion {
+  double speed = 1e-4;  ///< [m/s]
+  double hold = 0.1;    ///< [s]
 };
 
 }  // namespace drapeplan

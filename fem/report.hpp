@@ -13,7 +13,7 @@ struct Energies {
   double internal = 0;       ///< work done on the fabric, its hourglass part included
   double external = 0;       ///< work of gravity and of the actuators
   double friction = 0;       ///< taken by friction, its elastic part included
-  double contact = 0;        ///< stored by normal contact
+  double contact = 0;        ///< stored by normal contact and taken by its dashpots
   double damping = 0;        ///< taken by mass damping
   double constraint = 0;     ///< taken by interlinks, guides and tilt stops
   double hourglass = 0;      ///< stored in hourglass modes; part of `internal`
@@ -27,14 +27,15 @@ struct RunReport {
   RunStatus status = RunStatus::done;
   std::string message;  ///< why it ended
   std::int64_t steps = 0;
-  double dt = 0;              ///< [s], of the simulation
+  double dt = 0;              ///< mean step [s], of the simulation
   double simulated_time = 0;  ///< [s], of the simulation (schedule time / time scaling)
   double wall_seconds = 0;
   double element_updates_per_second = 0;
   Energies energy;
-  double largest_kinetic_ratio = 0;  ///< kinetic energy of the ply's free nodes over internal energy at the
-                                     ///< end of each tenth, from the second on
-  double largest_penetration = 0;    ///< of the ply's underside below the mold, at the end [m]
+  double largest_kinetic_ratio = 0;    ///< kinetic energy of the ply's free nodes over internal energy at the
+                                       ///< end of each tenth, from the second on
+  double largest_hourglass_share = 0;  ///< stored hourglass energy over internal energy, at the same instants
+  double largest_penetration = 0;      ///< of the ply's underside below the mold over the run [m]
   double largest_link_error =
       0;  ///< error of an interlink's length or of the fixed joint's place over the run [m]
   std::uint64_t state_hash = 0;

@@ -46,6 +46,18 @@ double Schedule::duration() const {
   return last + blend_time;
 }
 
+double Schedule::last_motion() const {
+  double last = 0;
+  for (const auto& path : paths) {
+    for (size_t k = path.size(); k-- > 1;) {
+      if (path[k].z == path[k - 1].z) continue;
+      last = std::max(last, path[k].time);
+      break;
+    }
+  }
+  return last + blend_time;
+}
+
 double Schedule::largest_velocity() const {
   double largest = 0;
   for (const auto& path : paths) {

@@ -26,8 +26,10 @@ struct Schedule {
 
   /// Command of gripper g at time t [s]; before the first and after the last knot the path is at rest.
   [[nodiscard]] Command command(int gripper, double t) const;
-  /// Time of the last movement [s].
+  /// Time of the last knot, and the blend after it [s].
   [[nodiscard]] double duration() const;
+  /// When the last commanded motion ends; then all joints rest [s].
+  [[nodiscard]] double last_motion() const;
   /// Largest |vz| over all grippers [m/s].
   [[nodiscard]] double largest_velocity() const;
 };

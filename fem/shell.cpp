@@ -3,6 +3,10 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
+
+#include "fem/rates.hpp"
+#include "fem/shell_bounds.hpp"
 
 namespace drapeplan {
 namespace {
@@ -21,21 +25,56 @@ struct Block {
   ElementGeometry<Lanes> geometry;
 };
 
+/// Range and pieces of the resampled fibre curve.
+struct FibreGrid {
+  explicit FibreGrid(const Fabric& fabric) {
+    for (const Curve& curve : fabric.compression.curves) lower = std::min(lower, -curve.strain.back());
+    for (const Curve& curve : fabric.tension.curves) upper = std::max(upper, curve.strain.back());
+    intervals = int(std::lround((upper - lower) / kFibreStep));
+  }
+  double lower = -kTabulatedStrain, upper = kTabulatedStrain;
+  int intervals = 0;
+};
+
+/// Nominal stress over nominal strain [-] and rate [1/s].
+double fibre_stress(const Fabric& fabric, double strain, double rate) {
+  return strain >= 0 ? fabric.tension(strain, rate, fabric.rate_floor)
+                     : -fabric.compression(-strain, rate, fabric.rate_floor);
+}
+
+/// Conjugate shear stress / cos g over sin g and rate of the angle [rad/s].
+double shear_stress(const Fabric& fabric, double sine, double rate) {
+  const double angle = std::asin(std::abs(sine));
+  const double conjugate = fabric.shear_measure == ShearMeasure::conjugate ? 1 / std::cos(angle) : 1;
+  return std::copysign(fabric.shear(angle, rate, fabric.rate_floor) * conjugate, sine);
+}
+
 KernelMaterial kernel_material(const Fabric& fabric, const FemOptions& options) {
   KernelMaterial material;
   material.thickness = fabric.thickness;
   material.transverse = kShearCorrection * fabric.transverse_shear_modulus * fabric.thickness;
-  const auto fibre = [&](double e) { return e >= 0 ? fabric.tension(e) : -fabric.compression(-e); };
-  const double lower = -std::max(kTabulatedStrain, fabric.compression.strain.back());
-  const double upper = std::max(kTabulatedStrain, fabric.tension.strain.back());
-  material.fibre = Lookup(fibre, lower, upper, int(std::lround((upper - lower) / kFibreStep)));
-  const auto shear = [&](double sine) {
-    const double angle = std::asin(std::abs(sine));
-    return std::copysign(fabric.shear(angle) / std::cos(angle), sine);
-  };
-  material.shear = Lookup(shear, -kTabulatedSine, kTabulatedSine, kShearIntervals);
-  material.hourglass_modulus = options.hourglass * fabric.compression.smallest_slope();
+  const FibreGrid grid(fabric);
+  material.fibre =
+      Lookup([&](double e) { return fibre_stress(fabric, e, 0); }, grid.lower, grid.upper, grid.intervals);
+  material.shear = Lookup([&](double sine) { return shear_stress(fabric, sine, 0); }, -kTabulatedSine,
+                          kTabulatedSine, kShearIntervals);
+  material.hourglass_modulus = options.hourglass * fabric.compression.slowest().smallest_slope();
   return material;
+}
+
+RateTables rate_tables(const Fabric& fabric) {
+  double fastest = 0;
+  for (const StressTable* table : {&fabric.tension, &fabric.compression, &fabric.shear}) {
+    if (table->rate_dependent()) fastest = std::max(fastest, table->rates.back());
+  }
+  const FibreGrid grid(fabric);
+  RateTables tables;
+  tables.fibre = RateLookup([&](double e, double rate) { return fibre_stress(fabric, e, rate); }, grid.lower,
+                            grid.upper, grid.intervals, fabric.rate_floor, fastest);
+  tables.shear = RateLookup([&](double sine, double rate) { return shear_stress(fabric, sine, rate); },
+                            -kTabulatedSine, kTabulatedSine, kShearIntervals, fabric.rate_floor, fastest);
+  tables.gain = 1 / (fabric.rate_filter * fabric.rate_floor);
+  return tables;
 }
 
 ElementGeometry<double> element_geometry(const Mesh& mesh, const std::array<int, 4>& quad) {
@@ -57,23 +96,65 @@ ElementGeometry<double> element_geometry(const Mesh& mesh, const std::array<int,
   return g;
 }
 
-template <int N>
+struct NoTables {};
+
+template <int N, bool kRates>
 class ShellTerm final : public Shell {
  public:
   ShellTerm(const Mesh& mesh, const Fabric& fabric, const FemOptions& options)
-      : mesh_(mesh), material_(kernel_material(fabric, options)), shear_slope_(fabric.shear.largest_slope()) {
+      : mesh_(mesh),
+        material_(kernel_material(fabric, options)),
+        fibre_slope_(material_.fibre.largest_slope()),
+        shear_slope_(fabric.shear.slowest().largest_slope()) {
+    if constexpr (kRates) {
+      tables_ = rate_tables(fabric);
+      fibre_slope_ = tables_.fibre.largest_slope(tables_.gain);
+      shear_slope_ = tables_.shear.largest_slope(tables_.gain);
+      lag_rate_ = options.time_scaling / fabric.rate_filter;
+    }
     for (const auto& quad : mesh.quads) geometry_.push_back(element_geometry(mesh, quad));
     for (size_t first = 0; first < mesh.quads.size();) first += add_block(first);
   }
 
-  [[nodiscard]] std::string_view name() const override { return "shell"; }
+  [[nodiscard]] std::string_view name() const override { return kRates ? "shell with rates" : "shell"; }
 
   [[nodiscard]] std::vector<Forces> entries() const override {
     const int n = mesh_.node_count();
     return {{Book::internal, VectorField(n), VectorField(n)}};
   }
 
-  void add_stiffness(NodalStiffness& stiffness) const override;
+  /// Sums of absolute rows of the rest stiffness with the steepest slopes.
+  void add_stiffness(NodalStiffness& stiffness) const override {
+    const auto section = steepest_section(material_.thickness, fibre_slope_, shear_slope_);
+    for (size_t e = 0; e < mesh_.quads.size(); ++e) {
+      const ElementRows<double> rows = element_rows(geometry_[e], material_, section);
+      for (size_t c = 0; c < 4; ++c) {
+        const auto node = size_t(mesh_.quads[e][c]);
+        stiffness.translation[node] += rows.translation[c % 2];
+        stiffness.rotation[node] += rows.rotation[c % 2];
+        stiffness.coupling[node] += rows.coupling[c % 2];
+      }
+    }
+  }
+
+  void add_tangent(const State& state, NodalStiffness& stiffness) const override {
+    for (size_t b = 0; b < blocks_.size(); ++b) {
+      const Block& block = blocks_[b];
+      Corners<Lanes> x, d;
+      load_corners(state, block, x, d);
+      const auto law = slopes_of(state, b);
+      const auto section = section_tangent<N>(block.geometry, material_, law, x, d);
+      const ElementRows<Lanes> rows = element_rows(block.geometry, material_, section);
+      for (size_t c = 0; c < 4; ++c) {
+        for (size_t l = 0; l < size_t(block.used); ++l) {
+          const auto node = size_t(block.node[c][l]);
+          stiffness.translation[node] += rows.translation[c % 2][l];
+          stiffness.rotation[node] += rows.rotation[c % 2][l];
+          stiffness.coupling[node] += rows.coupling[c % 2][l];
+        }
+      }
+    }
+  }
 
   // Inlined as a whole: lanes then stay in registers between the steps of the kernel.
   [[gnu::flatten]] void forces(State& state, Forces* entries) const override {
@@ -82,12 +163,12 @@ class ShellTerm final : public Shell {
     force.fill(0);
     moment.fill(0);
     Corners<Lanes> x, d, f, m;
-    for (const Block& block : blocks_) {
-      for (size_t c = 0; c < 4; ++c) {
-        x[c] = gather(state.x, block, c);
-        d[c] = gather(state.d, block, c);
-      }
-      shell_forces<N>(block.geometry, material_, x, d, f, m);
+    const double follow = kRates ? -std::expm1(-state.dt * lag_rate_) : 0;
+    for (size_t b = 0; b < blocks_.size(); ++b) {
+      const Block& block = blocks_[b];
+      load_corners(state, block, x, d);
+      auto law = law_of(state, b, follow);
+      shell_forces<N>(block.geometry, material_, law, x, d, f, m);
       // Corners 0 and 2, then 1 and 3: neighbours in a row share nodes, so their sums are kept apart in time.
       for (const size_t c : {size_t(0), size_t(2), size_t(1), size_t(3)}) {
         scatter(f[c], block, c, force);
@@ -121,8 +202,33 @@ class ShellTerm final : public Shell {
     }
   }
 
+  [[nodiscard]] size_t lagged_count() const override { return kRates ? 3 * N * slot_stride() : 0; }
+
  private:
   size_t add_block(size_t first);
+  [[nodiscard]] size_t slot_stride() const { return blocks_.size() * size_t(kLanes); }
+
+  auto slopes_of(const State& state, size_t block) const {
+    if constexpr (kRates) {
+      return RateSlopes(tables_, &state.lagged[block * size_t(kLanes)], slot_stride());
+    } else {
+      return StaticLaw(material_);
+    }
+  }
+  auto law_of(State& state, size_t block, double follow) const {
+    if constexpr (kRates) {
+      return RateLaw(tables_, &state.lagged[block * size_t(kLanes)], slot_stride(), follow);
+    } else {
+      return StaticLaw(material_);
+    }
+  }
+
+  static void load_corners(const State& state, const Block& block, Corners<Lanes>& x, Corners<Lanes>& d) {
+    for (size_t c = 0; c < 4; ++c) {
+      x[c] = gather(state.x, block, c);
+      d[c] = gather(state.d, block, c);
+    }
+  }
 
   [[nodiscard]] Corners<double> corners(const VectorField& field, size_t element) const {
     Corners<double> out;
@@ -158,14 +264,16 @@ class ShellTerm final : public Shell {
 
   Mesh mesh_;
   KernelMaterial material_;
-  double shear_slope_;  ///< largest d tau / d g [Pa]
+  double fibre_slope_, shear_slope_;  ///< steepest, instantaneous ones with rates [Pa]
+  double lag_rate_ = 0;               ///< of lagged strains, in the simulation's time [1/s]
+  std::conditional_t<kRates, RateTables, NoTables> tables_;
   std::vector<ElementGeometry<double>> geometry_;
   std::vector<Block> blocks_;
 };
 
 /// Appends the block that starts at element `first`; a block ends where the run of consecutive nodes ends.
-template <int N>
-size_t ShellTerm<N>::add_block(size_t first) {
+template <int N, bool kRates>
+size_t ShellTerm<N, kRates>::add_block(size_t first) {
   const size_t left = std::min(mesh_.quads.size() - first, size_t(kLanes));
   size_t run = 1;
   const auto continues = [&](size_t l) {
@@ -198,45 +306,21 @@ size_t ShellTerm<N>::add_block(size_t first) {
   return left;
 }
 
-/// Sums of absolute rows of the rest stiffness. Both fibre families may act fully on the same node, but never
-/// in the same pattern: along one wave, sin^2 a cos^2 b + cos^2 a sin^2 b <= 1, whatever the shear angle. So
-/// the larger counts.
-template <int N>
-void ShellTerm<N>::add_stiffness(NodalStiffness& stiffness) const {
-  const double t = material_.thickness;
-  const double fibre = material_.fibre.largest_slope();
-  for (size_t e = 0; e < mesh_.quads.size(); ++e) {
-    const ElementGeometry<double>& g = geometry_[e];
-    const HourglassStiffness<double> h = hourglass_stiffness(g, material_);
-    const std::array<double, 4> b1{std::abs(g.b10), std::abs(g.b11), std::abs(g.b10), std::abs(g.b11)};
-    const std::array<double, 4> b2{std::abs(g.b20), std::abs(g.b21), std::abs(g.b20), std::abs(g.b21)};
-    const double sum1 = 2 * (b1[0] + b1[1]), sum2 = 2 * (b2[0] + b2[1]);
-    const double warp =
-        0.25 / std::min(g.half1, g.half2);  // transverse shear per unit of hourglass displacement
-    for (size_t c = 0; c < 4; ++c) {
-      const auto node = size_t(mesh_.quads[e][c]);
-      const double row1 = b1[c] * sum1, row2 = b2[c] * sum2, both = (b1[c] + b2[c]) * (sum1 + sum2);
-      const double fibres = g.area * t * fibre * std::max(row1, row2);
-      stiffness.translation[node] +=
-          fibres + g.area * (t * shear_slope_ * both + material_.transverse * (row1 + row2)) +
-          4 * (h.membrane + g.area * material_.transverse / 3 * 2 * warp * warp);
-      stiffness.rotation[node] +=
-          fibres * t * t / 12 + g.area * material_.transverse * (0.5 + 2.0 / 3) + 4 * h.director;
-      stiffness.coupling[node] += fibres * t / 4 + g.area * material_.transverse * (b1[c] + b2[c] + warp);
-    }
-  }
-}
-
 }  // namespace
 
 std::unique_ptr<Shell> make_shell(const Mesh& mesh, const Fabric& fabric, const FemOptions& options) {
+  const auto make = [&]<int N>(std::integral_constant<int, N>) -> std::unique_ptr<Shell> {
+    if (options.rates && fabric.rate_dependent())
+      return std::make_unique<ShellTerm<N, true>>(mesh, fabric, options);
+    return std::make_unique<ShellTerm<N, false>>(mesh, fabric, options);
+  };
   switch (options.section_points) {
     case 1:
-      return std::make_unique<ShellTerm<1>>(mesh, fabric, options);
+      return make(std::integral_constant<int, 1>());
     case 3:
-      return std::make_unique<ShellTerm<3>>(mesh, fabric, options);
+      return make(std::integral_constant<int, 3>());
     case 5:
-      return std::make_unique<ShellTerm<5>>(mesh, fabric, options);
+      return make(std::integral_constant<int, 5>());
     default:
       throw std::invalid_argument("shell: section_points must be 1, 3 or 5");
   }

@@ -39,31 +39,55 @@ using Corners = std::array<Vec3<V>, 4>;
 
 /// Gauss points and weights over the thickness, in units of the thickness.
 template <int N>
-struct Section;
+struct SectionRule;
 template <>
-struct Section<1> {
+struct SectionRule<1> {
   static constexpr std::array<double, 1> place{0.0}, weight{1.0};
 };
 template <>
-struct Section<3> {
+struct SectionRule<3> {
   static constexpr std::array<double, 3> place{-0.38729833462074170, 0.0, 0.38729833462074170};
   static constexpr std::array<double, 3> weight{5.0 / 18, 8.0 / 18, 5.0 / 18};
 };
 template <>
-struct Section<5> {
+struct SectionRule<5> {
   static constexpr std::array<double, 5> place{-0.45308992296933199, -0.26923465505284155, 0.0,
                                                0.26923465505284155, 0.45308992296933199};
   static constexpr std::array<double, 5> weight{0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
                                                 0.23931433524968324, 0.11846344252809454};
 };
 
-/// The fabric as the kernel needs it.
+/// The fabric as the kernel needs it; of the slowest curves where it depends on rates.
 struct KernelMaterial {
   Lookup fibre;  ///< nominal stress over nominal strain, tension and compression [Pa]
   Lookup shear;  ///< tau / cos g over sin g [Pa]
   double thickness = 0;
   double transverse = 0;         ///< K G t [N/m]
   double hourglass_modulus = 0;  ///< [Pa]
+};
+
+/// The law of a fabric that does not depend on rates.
+class StaticLaw {
+ public:
+  explicit StaticLaw(const KernelMaterial& material) : material_(material) {}
+  /// @param slot  of the strain in the element: 3 per section point (fibre 1, fibre 2, shear).
+  template <class V>
+  [[nodiscard]] V fibre(const V& strain, size_t /*slot*/) const {
+    return material_.fibre(strain);
+  }
+  template <class V>
+  [[nodiscard]] V shear(const V& sine, size_t /*slot*/) const {
+    return material_.shear(sine);
+  }
+  [[nodiscard]] Lanes fibre_slope(const Lanes& strain, size_t /*slot*/) const {
+    return material_.fibre.steepest_near(strain);
+  }
+  [[nodiscard]] Lanes shear_slope(const Lanes& sine, size_t /*slot*/) const {
+    return material_.shear.steepest_near(sine);
+  }
+
+ private:
+  const KernelMaterial& material_;
 };
 
 /// Derivatives of a block: what the kernel computes from corners before it needs the law.
@@ -100,8 +124,9 @@ HourglassStiffness<V> hourglass_stiffness(const ElementGeometry<V>& g, const Ker
 }
 
 /// Forces that the element exerts on its corners: on positions [N] and on directors [N m].
-template <int N, class V>
-void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, const Corners<V>& x,
+/// @param law  stresses at section points, like StaticLaw.
+template <int N, class V, class Law>
+void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, Law& law, const Corners<V>& x,
                   const Corners<V>& d, Corners<V>& force, Corners<V>& moment) {
   using std::sqrt;
   const ElementMotion<V> m = element_motion(g, x, d);
@@ -109,13 +134,14 @@ void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, c
   Vec3<V> n1{zero, zero, zero}, n2 = n1, m1 = n1, m2 = n1;
 
   for (size_t k = 0; k < size_t(N); ++k) {
-    const V s(Section<N>::place[k] * material.thickness), w(Section<N>::weight[k] * material.thickness);
+    const V s(SectionRule<N>::place[k] * material.thickness),
+        w(SectionRule<N>::weight[k] * material.thickness);
     const Vec3<V> f1 = m.a1 + s * m.c1, f2 = m.a2 + s * m.c2;
     const V length1 = sqrt(dot(f1, f1)), length2 = sqrt(dot(f2, f2));
     const V inverse1 = one / length1, inverse2 = one / length2;
     const V sine = dot(f1, f2) * inverse1 * inverse2;
-    const V t1 = material.fibre(V(length1 - one)), t2 = material.fibre(V(length2 - one)),
-            shear = material.shear(sine);
+    const V t1 = law.fibre(V(length1 - one), 3 * k), t2 = law.fibre(V(length2 - one), 3 * k + 1),
+            shear = law.shear(sine, 3 * k + 2);
     const V both = w * shear * inverse1 * inverse2;
     const Vec3<V> p1 = (w * (t1 - shear * sine * inverse1) * inverse1) * f1 + both * f2;
     const Vec3<V> p2 = (w * (t2 - shear * sine * inverse2) * inverse2) * f2 + both * f1;
@@ -167,8 +193,8 @@ ElementEnergy shell_energy(const ElementGeometry<double>& g, const KernelMateria
   const ElementMotion<double> m = element_motion(g, x, d);
   double density = 0;
   for (size_t k = 0; k < size_t(N); ++k) {
-    const double s = Section<N>::place[k] * material.thickness,
-                 w = Section<N>::weight[k] * material.thickness;
+    const double s = SectionRule<N>::place[k] * material.thickness,
+                 w = SectionRule<N>::weight[k] * material.thickness;
     const Vec3<double> f1 = m.a1 + s * m.c1, f2 = m.a2 + s * m.c2;
     const double length1 = std::sqrt(dot(f1, f1)), length2 = std::sqrt(dot(f2, f2));
     const double sine = dot(f1, f2) / (length1 * length2);

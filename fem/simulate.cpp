@@ -6,14 +6,17 @@
 #include <stdexcept>
 
 #include "fem/monitor.hpp"
+#include "fem/stable_step.hpp"
 #include "fem/workspace.hpp"
 
 namespace drapeplan {
 namespace {
 
-constexpr double kMostSteps = 1e10;  // weeks of run time: a wrong unit or a degenerate mesh, not a plan
-constexpr int kLooks =
-    200;  // times per run at which the monitor looks: 0.5 % of the run is lost at most by divergence
+constexpr double kMostSteps = 1e10;   // weeks of run time: a wrong unit or a degenerate mesh, not a plan
+constexpr int kLooks = 200;           // per run: 0.5 % of it is lost at most by divergence
+constexpr int kTenths = 10;           // at whose ends energies are compared, from the second on
+constexpr int kRestInterval = 32;     // steps between two looks at the ply's speed
+constexpr double kTimeSlack = 1e-12;  // of the duration: round-off of summed steps
 
 /// Height of the flat ply at the start: all joints stand at the same height.
 double start_height(const Model& model, const RunRequest& request) {
@@ -46,71 +49,115 @@ void refuse_start_in_mold(const Model& model, const State& state) {
   }
 }
 
+/// Where the run stands on the clock of the simulation [s].
+struct Clock {
+  Clock(const Model& model, const RunRequest& request) {
+    const double scaling = model.scene().options.time_scaling;
+    end = request.duration > 0 ? request.duration : (request.schedule ? request.schedule->duration() : 0);
+    if (!(end > 0)) throw std::invalid_argument("simulate: neither a schedule nor a duration is given");
+    end /= scaling;
+    pause = request.pause > 0 ? request.pause / scaling : end;
+    motion_end = request.schedule ? request.schedule->last_motion() / scaling : 0;
+    if (!(end / model.dt() <= kMostSteps))
+      throw std::invalid_argument("simulate: the run would need more than 1e10 steps");
+  }
+  [[nodiscard]] bool ended(const State& state) const { return state.time >= end * (1 - kTimeSlack); }
+  /// Number of equal parts of the run that have passed.
+  [[nodiscard]] std::int64_t passed(double time, std::int64_t parts) const {
+    return std::int64_t(std::floor(time / end * double(parts) * (1 + kTimeSlack)));
+  }
+  /// Whether the last step has passed the end of one of so many parts.
+  [[nodiscard]] bool crossed(const State& state, std::int64_t parts) const {
+    return passed(state.time, parts) > passed(state.time - state.dt_before, parts);
+  }
+  double end = 0, pause = 0, motion_end = 0;
+};
+
+/// The step from the state's positions to the next: chosen anew every `step_interval` steps, and cut at the
+/// end of the run.
+void choose_step(const Model& model, const Clock& clock, State& state, NodalStiffness& scratch) {
+  const FemOptions& options = model.scene().options;
+  if (options.step_interval == 0) {
+    state.dt = model.dt();
+  } else if (state.step % options.step_interval == 0) {
+    state.dt = options.step_safety * stable_step(model, state, scratch);
+    if (state.step == 0) state.dt_before = state.dt;
+  }
+  state.dt = std::min(state.dt, clock.end - state.time);
+}
+
+/// True if the ply has been at rest for long enough, after all commanded motion.
+bool at_rest(const Model& model, const Clock& clock, State& state) {
+  const RestCriterion& rest = *model.scene().rest;
+  if (state.step % kRestInterval == 0) {
+    const bool moves = 2 * ply_kinetic_energy(model, state) > model.free_mass() * rest.speed * rest.speed;
+    if (moves || state.time < clock.motion_end) state.record.last_motion = state.time;
+  }
+  return state.time - state.record.last_motion >= rest.hold;
+}
+
+State first_state(const Model& model, const RunRequest& request) {
+  if (request.from) return *request.from;
+  State state = model.flat_state(start_height(model, request));
+  if (model.scene().mold) refuse_start_in_mold(model, state);
+  return state;
+}
+
 }  // namespace
 
 RunResult simulate(const Model& model, const RunRequest& request) {
-  const auto clock = std::chrono::steady_clock::now();
-  const double dt = model.dt();
+  const auto wall = std::chrono::steady_clock::now();
+  const Clock clock(model, request);
   const RigDrive drive{request.schedule, model.scene().options.time_scaling};
-  State state = model.flat_state(start_height(model, request));
-  const double duration =
-      request.duration > 0 ? request.duration : (request.schedule ? request.schedule->duration() : 0);
-  if (!(duration > 0)) throw std::invalid_argument("simulate: neither a schedule nor a duration is given");
-  if (model.scene().mold) refuse_start_in_mold(model, state);
-  const double count = std::ceil(duration / drive.time_scaling / dt);
-  if (!(count <= kMostSteps))
-    throw std::invalid_argument("simulate: the run would need more than 1e10 steps");
-  const auto steps = std::int64_t(count);
-  const auto instant = [steps](std::int64_t k, std::int64_t of) { return k * steps / of; };
-
   RunResult result;
-  RigRecord record;
+  RunReport& report = result.report;
+  State& state = result.state;
+  state = first_state(model, request);
+  const std::int64_t first_step = state.step, frames = request.observe ? request.frames : 0;
+  const std::int64_t spans = std::max<std::int64_t>(frames - 1, 1);
+  std::int64_t frame = state.step == 0 ? 0 : clock.passed(state.time, spans) + 1;
   Workspace work(model);
   Monitor monitor(model);
-  std::int64_t look = 1, tenth = 2, frame = 0;
-  const std::int64_t frames = request.observe ? request.frames : 0;
-  bool running = true;
-  while (running && state.step < steps) {
-    if (frame < frames && state.step >= instant(frame, std::max<std::int64_t>(frames - 1, 1))) {
+  bool running = true, rests = false;
+  while (running && !rests && !clock.ended(state) && state.time < clock.pause) {
+    if (frame < frames && clock.passed(state.time, spans) >= frame) {
       request.observe(take_snapshot(model, state, drive));
       ++frame;
     }
+    choose_step(model, clock, state, work.stiffness);
     compute_forces(model, state, work);
     kick_nodes(model, state, work);
-    if (model.rig()) kick_pads(model, state, drive, work, record);
+    if (model.rig()) kick_pads(model, state, drive, work);
     book_work(model, state, work);
     drift_nodes(model, state);
-    if (model.rig()) model.rig()->drift(state, dt);
-    state.time = double(++state.step) * dt;
+    if (model.rig()) model.rig()->drift(state);
+    advance_clock(state);
 
-    if (state.step >= instant(look, kLooks)) {
-      ++look;
-      running = monitor.look(state, result) && record.converged;
-      if (state.step >= instant(tenth, 10)) {
-        ++tenth;
-        monitor.note_kinetic_ratio(state, result);
-      }
-    }
+    if (clock.crossed(state, kLooks)) running = monitor.look(state, report) && work.rig.converged;
+    if (clock.crossed(state, kTenths) && clock.passed(state.time, kTenths) > 1)
+      monitor.compare_energies(state);
+    if (model.scene().rest) rests = at_rest(model, clock, state);
   }
 
-  RunReport& report = result.report;
   result.final = take_snapshot(model, state, drive);
-  if (running) monitor.close(state, result);
-  if (running && frame < frames) request.observe(result.final);
-  if (!record.converged && report.status == RunStatus::done) {
+  if (running) monitor.close(state, report);
+  if (running && clock.ended(state) && frame < frames) request.observe(result.final);
+  if (!work.rig.converged && report.status == RunStatus::done) {
     report.status = RunStatus::diverged;
     report.message = "interlinks could not be kept at their length";
   }
-  if (report.message.empty()) report.message = "the schedule has ended";
+  if (report.message.empty()) {
+    report.message = rests                ? "the ply is at rest"
+                     : clock.ended(state) ? "the time is over"
+                                          : "paused, to be continued";
+  }
   report.steps = state.step;
-  report.dt = dt;
+  report.dt = state.time / double(std::max<std::int64_t>(state.step, 1));
   report.simulated_time = state.time;
-  report.largest_link_error = record.largest_link_error;
   report.state_hash = hash_state(state, model.node_count());
-  report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
-  report.element_updates_per_second =
-      double(state.step) * model.scene().mesh.element_count() / std::max(report.wall_seconds, 1e-9);
-  result.largest_actuator_force = record.largest_force;
+  report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+  report.element_updates_per_second = double(state.step - first_step) * model.scene().mesh.element_count() /
+                                      std::max(report.wall_seconds, 1e-9);
   return result;
 }
 

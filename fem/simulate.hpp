@@ -13,19 +13,21 @@ namespace drapeplan {
 struct RunRequest {
   const Schedule* schedule = nullptr;  ///< needed with a rig: all joints start at the same height
   double duration = 0;                 ///< of the schedule's clock; 0: until the schedule ends [s]
+  const State* from = nullptr;         ///< goes on from here instead of the flat start
+  double pause =
+      0;  ///< stops at the first step at or after it, to be continued; 0: never [s, schedule's clock]
   int frames = 0;  ///< snapshots handed to `observe`, equally spaced in time, the start included
   std::function<void(const Snapshot&)> observe = nullptr;
 };
 
 struct RunResult {
   RunReport report;
-  Snapshot final;                        ///< the last state, also of a diverged run
-  double largest_fibre_strain = 0;       ///< tension at mid-thickness, sampled over the run [-]
-  double largest_fibre_compression = 0;  ///< the same in compression, magnitude [-]
-  double largest_actuator_force = 0;     ///< [N]
+  Snapshot final;  ///< the last state, also of a diverged run, to look at
+  State state;     ///< the same, to go on from; its `record` has the extremes of the run
 };
 
 /// Runs the model. A run that diverges is a result, never an exception.
+/// A run that pauses and goes on from its state has the same bits as one that never did.
 /// @throws std::invalid_argument if the schedule does not fit the rig, or neither schedule nor duration is
 /// given.
 RunResult simulate(const Model& model, const RunRequest& request);

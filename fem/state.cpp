@@ -24,9 +24,12 @@ std::uint64_t hash_state(const State& state, int node_count) {
   Fnv1a hash;
   hash.add(double(state.step));
   hash.add(state.time);
+  hash.add(state.dt);
+  hash.add(state.dt_before);
   for (const VectorField* field : {&state.x, &state.v, &state.d, &state.w, &state.anchor})
     add(hash, *field, n);
   add(hash, state.stuck, n);
+  add(hash, state.lagged, state.lagged.size());
   for (const PadState& pad : state.pads) {
     for (int k = 0; k < 3; ++k) hash.add(pad.centre[k]);
     for (int k = 0; k < 4; ++k) hash.add(pad.rotation.coeffs()[k]);

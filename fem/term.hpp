@@ -1,6 +1,7 @@
 // A scene is a list of terms: each adds forces to nodes; what a scene does not need is not in the list.
 #pragma once
 
+#include <algorithm>
 #include <string_view>
 #include <vector>
 
@@ -18,6 +19,12 @@ struct Forces {
 
 /// Upper bounds of the stiffness that acts on each node: sums of absolute rows. Limits of terms add.
 struct NodalStiffness {
+  explicit NodalStiffness(int nodes)
+      : translation(size_t(nodes), 0.0), rotation(size_t(nodes), 0.0), coupling(size_t(nodes), 0.0) {}
+  void clear() {
+    for (auto* list : {&translation, &rotation, &coupling}) std::fill(list->begin(), list->end(), 0.0);
+  }
+
   std::vector<double> translation;  ///< [N/m]
   std::vector<double> rotation;     ///< of directors [N m]
   std::vector<double> coupling;     ///< between both [N]
@@ -31,8 +38,12 @@ class Term {
   [[nodiscard]] virtual std::string_view name() const = 0;
   /// Entries of the workspace that this term writes, in the order in which forces() gets them.
   [[nodiscard]] virtual std::vector<Forces> entries() const = 0;
-  /// Adds the term's stiffness bounds in the rest shape.
+  /// Adds the term's stiffness bounds over all that its laws allow, in the rest shape.
   virtual void add_stiffness(NodalStiffness& stiffness) const = 0;
+  /// Adds bounds that hold at a state and near it; what is constant need not tell the two apart.
+  virtual void add_tangent(const State& /*state*/, NodalStiffness& stiffness) const {
+    add_stiffness(stiffness);
+  }
   /// Overwrites the term's entries with its forces at the state's positions. Contact moves its anchors.
   virtual void forces(State& state, Forces* entries) const = 0;
 };

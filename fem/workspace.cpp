@@ -18,7 +18,8 @@ void set(VectorField& field, size_t n, const Eigen::Vector3d& value) {
 
 }  // namespace
 
-Workspace::Workspace(const Model& model) : mean_v(model.node_count()), mean_w(model.node_count()) {
+Workspace::Workspace(const Model& model)
+    : mean_v(model.node_count()), mean_w(model.node_count()), stiffness(model.node_count()) {
   for (const auto& term : model.terms()) {
     first.push_back(entries.size());
     for (Forces& entry : term->entries()) entries.push_back(std::move(entry));
@@ -32,9 +33,8 @@ void compute_forces(const Model& model, State& state, Workspace& work) {
 }
 
 void kick_nodes(const Model& model, State& state, Workspace& work) {
-  const double dt = model.dt(), alpha = model.alpha();
-  const Lanes keep((1 - 0.5 * alpha * dt) / (1 + 0.5 * alpha * dt)), gain(dt / (1 + 0.5 * alpha * dt)),
-      half(0.5);
+  const double h = state.kick_time(), alpha = model.alpha();
+  const Lanes keep((1 - 0.5 * alpha * h) / (1 + 0.5 * alpha * h)), gain(h / (1 + 0.5 * alpha * h)), half(0.5);
   for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
     Vec3<Lanes> force = work.entries[0].force.lanes(n), moment = work.entries[0].moment.lanes(n);
     for (size_t k = 1; k < work.entries.size(); ++k) {
@@ -52,7 +52,7 @@ void kick_nodes(const Model& model, State& state, Workspace& work) {
   }
 }
 
-void kick_pads(const Model& model, State& state, const RigDrive& drive, Workspace& work, RigRecord& record) {
+void kick_pads(const Model& model, State& state, const RigDrive& drive, Workspace& work) {
   const std::vector<int>& tied = model.rig()->tied();
   for (size_t k = 0; k < tied.size(); ++k) {
     const auto n = size_t(tied[k]);
@@ -63,7 +63,7 @@ void kick_pads(const Model& model, State& state, const RigDrive& drive, Workspac
       if (!work.entries[e].moment.x.empty()) work.rig.moment[k] += at(work.entries[e].moment, n);
     }
   }
-  model.rig()->kick(state, drive, model.dt(), model.alpha(), work.rig, record);
+  model.rig()->kick(state, drive, model.alpha(), work.rig);
   for (size_t k = 0; k < tied.size(); ++k) {
     set(work.mean_v, size_t(tied[k]), work.rig.mean_v[k]);
     set(work.mean_w, size_t(tied[k]), work.rig.mean_w[k]);
@@ -71,7 +71,7 @@ void kick_pads(const Model& model, State& state, const RigDrive& drive, Workspac
 }
 
 void book_work(const Model& model, State& state, const Workspace& work) {
-  const double dt = model.dt();
+  const double h = state.kick_time();
   const auto nodes = size_t(model.node_count());
   for (const Forces& entry : work.entries) {
     Lanes power(0.0);
@@ -82,7 +82,7 @@ void book_work(const Model& model, State& state, const Workspace& work) {
       for (size_t n = 0; n < nodes; n += size_t(kLanes))
         power += dot(entry.moment.lanes(n), work.mean_w.lanes(n));
     }
-    state.work[size_t(entry.book)] += dt * stdx::reduce(power);
+    state.work[size_t(entry.book)] += h * stdx::reduce(power);
   }
   if (model.alpha() > 0) {
     Lanes power(0.0);
@@ -90,12 +90,12 @@ void book_work(const Model& model, State& state, const Workspace& work) {
       const Vec3<Lanes> v = work.mean_v.lanes(n), w = work.mean_w.lanes(n);
       power += load(&model.mass()[n]) * dot(v, v) + load(&model.inertia()[n]) * dot(w, w);
     }
-    state.work[size_t(Book::damping)] -= dt * model.alpha() * stdx::reduce(power);
+    state.work[size_t(Book::damping)] -= h * model.alpha() * stdx::reduce(power);
   }
 }
 
 void drift_nodes(const Model& model, State& state) {
-  const Lanes dt(model.dt()), one(1.0);
+  const Lanes dt(state.dt), one(1.0);
   for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
     state.x.set_lanes(n, state.x.lanes(n) + dt * state.v.lanes(n));
     // The director turns along a great circle by the angle |w| dt, and its rate with it: |d| and |w| keep
@@ -114,6 +114,12 @@ void drift_nodes(const Model& model, State& state) {
     state.d.set_lanes(n, unit * turned);
     state.w.set_lanes(n, cosine * w - (sine * dt * w2) * d);
   }
+}
+
+void advance_clock(State& state) {
+  state.time += state.dt;
+  state.dt_before = state.dt;
+  ++state.step;
 }
 
 double ply_kinetic_energy(const Model& model, const State& state) {

@@ -89,6 +89,7 @@ struct Case {
   std::string grippers_source;    ///< where their figures come from, in words
   std::optional<double> gravity;  ///< [m/s^2]
   std::optional<double> damping;  ///< mass-proportional rate alpha of the unscaled ply [1/s]
+  std::optional<RestCriterion> rest;
   std::vector<Edge> clamped;
   std::vector<Probe> probes;
   std::vector<Reference> references;

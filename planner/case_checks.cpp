@@ -89,10 +89,48 @@ void check_probes(const CaseFields& fields, CaseReader& reader) {
   }
 }
 
+/// Faster rates are resisted more: what is weaker the faster it goes would feed every vibration.
+void check_rates(CaseReader& reader, const std::string& mode, const CurveFields& fields) {
+  const std::string pointer = "/material/" + mode + "/rates";
+  if (fields.rates.empty() || !reader.good("/material/" + mode)) return;
+  const StressTable table = stress_table(fields);
+  for (size_t k = 1; k < fields.rates.size(); ++k) {
+    const std::string place = pointer + "/" + std::to_string(k);
+    if (!(table.rates[k] > table.rates[k - 1])) {
+      reader.fail(place + "/rate", "rates must increase");
+      continue;
+    }
+    std::vector<double> strains = table.curves[k].strain;
+    strains.insert(strains.end(), table.curves[k - 1].strain.begin(), table.curves[k - 1].strain.end());
+    constexpr double kSlackShare = 1e-9;  // round-off of factors
+    for (const double strain : strains) {
+      const double slow = table.curves[k - 1](strain), fast = table.curves[k](strain);
+      if (fast >= slow * (1 - kSlackShare)) continue;
+      reader.fail(place,
+                  "at strain " + std::to_string(strain) + " its stress is below that of the slower rate");
+      break;
+    }
+  }
+}
+
+void check_material(const CaseFields& fields, CaseReader& reader) {
+  if (!fields.material) return;
+  const MaterialFields& material = *fields.material;
+  if (material.law == 0) {
+    check_rates(reader, "tension", material.tension);
+    check_rates(reader, "compression", material.compression);
+    check_rates(reader, "shear", material.shear);
+    if (fields.damping && fields.damping->by == 1 && !fields.damping->modulus && reader.good("/damping"))
+      reader.fail("/damping",
+                  "\"modulus\" is missing (the law is not linear, so it cannot be taken from it)");
+  }
+}
+
 }  // namespace
 
 void check_case(const CaseFields& fields, CaseReader& reader) {
   const Case& c = fields.value;
+  check_material(fields, reader);
   check_grippers(fields, reader);
   check_probes(fields, reader);
   if (reader.good("/optimise") && c.optimise.longest_sequence < c.optimise.shortest_stroke) {

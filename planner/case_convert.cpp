@@ -10,14 +10,35 @@ Curve straight(double modulus) {
   return {{0, 1}, {0, modulus}};
 }
 
-bool is_straight(const Curve& curve) {
+bool is_straight(const StressTable& table) {
+  if (table.curves.size() != 1) return false;
+  const Curve& curve = table.slowest();
   return curve.strain == std::vector<double>{0, 1} && curve.stress.size() == 2;
 }
 
-Curve scaled(const CurveFields& fields) {
-  Curve curve = fields.curve;
-  for (double& stress : curve.stress) stress *= fields.factor;
+Curve scaled(const Curve& points, double factor) {
+  Curve curve = points;
+  for (double& stress : curve.stress) stress *= factor;
   return curve;
+}
+
+/// A table as fields: every rate with its own points.
+CurveFields curve_fields(const StressTable& table, const std::string& source) {
+  CurveFields fields{table.curves.empty() ? Curve() : table.slowest(), 1, source, {}};
+  for (size_t k = 0; k < table.rates.size(); ++k)
+    fields.rates.push_back({table.rates[k], 1, table.curves[k]});
+  return fields;
+}
+
+/// Rate alpha of mass damping [1/s]. Seed, Eqs. (4) and (5), per width: the lowest frequency of a strip.
+double alpha_of(const DampingFields& d, const std::optional<MaterialFields>& material) {
+  if (d.by == 0 || !material) return d.alpha;
+  constexpr double kFirstRoot = 1.8751040687119611;  // of cos x cosh x = -1: clamped-free beam
+  const double modulus = d.modulus.value_or(material->modulus);
+  const double stiffness = modulus * std::pow(material->thickness, 3) / 12;
+  const double frequency =
+      kFirstRoot * kFirstRoot * std::sqrt(stiffness / (material->areal_density * std::pow(d.length, 4)));
+  return 2 * d.ratio * frequency;
 }
 
 Fabric fabric_of(const MaterialFields& m) {
@@ -26,9 +47,12 @@ Fabric fabric_of(const MaterialFields& m) {
   fabric.thickness = m.thickness;
   fabric.areal_density = m.areal_density;
   fabric.transverse_shear_modulus = m.transverse_shear_modulus;
-  fabric.tension = linear ? straight(m.modulus) : scaled(m.tension);
-  fabric.compression = linear ? straight(m.modulus) : scaled(m.compression);
-  fabric.shear = linear ? straight(m.shear_modulus) : scaled(m.shear);
+  fabric.tension = linear ? straight(m.modulus) : stress_table(m.tension);
+  fabric.compression = linear ? straight(m.modulus) : stress_table(m.compression);
+  fabric.shear = linear ? straight(m.shear_modulus) : stress_table(m.shear);
+  fabric.shear_measure = ShearMeasure(m.shear_measure);
+  fabric.rate_floor = m.rate_floor;
+  fabric.rate_filter = m.rate_filter;
   return fabric;
 }
 
@@ -42,16 +66,20 @@ MaterialFields material_fields(const Fabric& fabric, const MaterialNotes& notes)
   m.areal_density = fabric.areal_density;
   m.transverse_shear_modulus = fabric.transverse_shear_modulus;
   const bool same = is_straight(fabric.tension) && is_straight(fabric.compression) &&
-                    fabric.tension.stress == fabric.compression.stress;
+                    fabric.tension.slowest().stress == fabric.compression.slowest().stress &&
+                    fabric.shear_measure == ShearMeasure::conjugate;
   const bool no_sources = (notes.tension_source + notes.compression_source + notes.shear_source).empty();
   if (same && is_straight(fabric.shear) && no_sources) {
     m.law = 1;
-    m.modulus = fabric.tension.stress[1];
-    m.shear_modulus = fabric.shear.stress[1];
+    m.modulus = fabric.tension.slowest().stress[1];
+    m.shear_modulus = fabric.shear.slowest().stress[1];
   } else {
-    m.tension = {fabric.tension, 1, notes.tension_source};
-    m.compression = {fabric.compression, 1, notes.compression_source};
-    m.shear = {fabric.shear, 1, notes.shear_source};
+    m.tension = curve_fields(fabric.tension, notes.tension_source);
+    m.compression = curve_fields(fabric.compression, notes.compression_source);
+    m.shear = curve_fields(fabric.shear, notes.shear_source);
+    m.shear_measure = int(fabric.shear_measure);
+    m.rate_floor = fabric.rate_floor;
+    m.rate_filter = fabric.rate_filter;
   }
   return m;
 }
@@ -92,12 +120,25 @@ MoldFields mold_fields(const Mold& mold) {
 
 }  // namespace
 
+StressTable stress_table(const CurveFields& fields) {
+  if (fields.rates.empty()) return scaled(fields.curve, fields.factor);
+  StressTable table;
+  for (const RateFields& rate : fields.rates) {
+    table.rates.push_back(rate.rate);
+    table.curves.push_back(
+        scaled(rate.curve.strain.empty() ? fields.curve : rate.curve, rate.factor * fields.factor));
+  }
+  if (table.rates.size() == 1) table.rates.clear();
+  return table;
+}
+
 void complete_case(CaseFields& fields) {
   Case& c = fields.value;
   if (const auto& m = fields.material) {
     c.material = fabric_of(*m);
     c.material_notes = {m->name, m->source, m->tension.source, m->compression.source, m->shear.source};
   }
+  if (fields.damping) c.damping = alpha_of(*fields.damping, fields.material);
   if (fields.mold) c.mold.emplace(shape_of(*fields.mold), fields.mold->extent);
   c.fidelities.try_emplace("report", fields.fem);
 }
@@ -107,6 +148,7 @@ CaseFields fields_of(const Case& value) {
   fields.value = value;
   if (value.material.thickness > 0) fields.material = material_fields(value.material, value.material_notes);
   if (value.mold) fields.mold = mold_fields(*value.mold);
+  if (value.damping) fields.damping.emplace().alpha = *value.damping;
   const auto report = fields.value.fidelities.find("report");
   if (report != fields.value.fidelities.end()) {
     fields.fem = report->second;

@@ -65,6 +65,18 @@ void visit_curve(FieldVisitor& v, CurveFields& fields, Dimension abscissa) {
            true});
   v.field({"factor", &fields.factor, "All stresses are multiplied by it", Dimension::none, positive()});
   v.field({"source", &fields.source, "What was measured, by whom, and what is assumed"});
+  ObjectList rates =
+      object_list("rates", "Curves by the rate of strain, slowest first; absent: no dependence on the rate",
+                  fields.rates, [&v, abscissa](RateFields& rate) {
+                    v.field({"rate", &rate.rate, "Of growing strain; slower and faster than all: constant",
+                             Dimension::rate, from(0), true});
+                    v.field({"factor", &rate.factor, "Stresses of this rate are multiplied by it",
+                             Dimension::none, positive()});
+                    Field points{"points", Table{&rate.curve, abscissa}, "Curve at this rate"};
+                    points.default_words = "the points of the mode";
+                    v.field(points);
+                  });
+  v.list(rates);
 }
 
 void visit_material(FieldVisitor& v, MaterialFields& m) {
@@ -82,8 +94,18 @@ void visit_material(FieldVisitor& v, MaterialFields& m) {
               [&] { visit_curve(v, m.tension, Dimension::strain); });
     v.section({"compression", "Fibre in compression, magnitudes", true}, true,
               [&] { visit_curve(v, m.compression, Dimension::strain); });
-    v.section({"shear", "Shear stress over shear angle, conjugate to the angle", true}, true,
-              [&] { visit_curve(v, m.shear, Dimension::angle); });
+    v.section({"shear", "Shear stress over shear angle", true}, true, [&] {
+      visit_curve(v, m.shear, Dimension::angle);
+      v.field({"measure", choice(m.shear_measure, {"conjugate", "force"}),
+               "`conjugate`: stress times rate of the angle is power per volume; `force`: shear force per "
+               "length over thickness, which is the conjugate stress over the cosine of the angle"});
+    });
+    v.field({"rate_floor", &m.rate_floor,
+             "Between two rates stresses are linear in log(1 + rate / floor): slower rates count linearly, "
+             "faster ones in the logarithm",
+             Dimension::rate, positive()});
+    v.field({"rate_filter", &m.rate_filter, "Time constant over which rates are averaged", Dimension::time,
+             positive()});
   });
   v.alternative("law", "linear", m.law == 1, [&] {
     v.field({"modulus", &m.modulus, "Fibre modulus, the same in tension and compression", Dimension::stress,
@@ -253,16 +275,40 @@ void visit_fem(FieldVisitor& v, FemOptions& f) {
            {1, 5, false, false, true}});
   v.field({"mass_scaling", &f.mass_scaling, "Factor on the mass; gravity acts on the unscaled mass",
            Dimension::none, from(1, 1e6)});
+  v.field({"target_step", &f.target_step, "Mass is added to nodes where the step would be smaller; 0: none",
+           Dimension::time, from(0, 1)});
   v.field({"time_scaling", &f.time_scaling, "The schedule is played this many times faster than written",
            Dimension::none, from(0.1, 1e4)});
   v.field(
       {"step_safety", &f.step_safety, "Share of the estimated stable step", Dimension::none, positive(1)});
+  v.field({"step_interval", &f.step_interval,
+           "Steps between two choices of the step; 0: one step that is safe for all strains of the tables",
+           Dimension::none, from(0, 1e4)});
+  v.field({"rates", &f.rates, "false: only the slowest curves of the material are used"});
   v.field({"hourglass", &f.hourglass, "Hourglass stiffness over the physical one of a fibre in compression",
            Dimension::none, from(0, 100)});
   v.field({"contact_stiffness", &f.contact_stiffness,
            "Contact stiffness of a free node over its membrane stiffness", Dimension::none, positive(100)});
   v.field({"contact_damping", &f.contact_damping,
            "Share of the critical damping of a node on its contact spring", Dimension::none, from(0, 1)});
+}
+
+void visit_damping(FieldVisitor& v, DampingFields& d) {
+  v.field({"by", choice(d.by, {"alpha", "strip"}),
+           "`alpha`: the rate itself; `strip`: from the lowest frequency of a clamped strip"});
+  v.alternative("by", "alpha", d.by == 0, [&] {
+    v.field({"alpha", &d.alpha,
+             "Rate, of the unscaled ply: twice the damping ratio times the lowest angular frequency",
+             Dimension::rate, from(0, 1e6), true});
+  });
+  v.alternative("by", "strip", d.by == 1, [&] {
+    v.field({"ratio", &d.ratio, "Damping ratio of the strip; 1 is critical", Dimension::none, from(0, 100)});
+    v.field(
+        {"length", &d.length, "Free length of the strip", Dimension::length, positive(kLargestLength), true});
+    Field modulus{"modulus", &d.modulus, "Static bending modulus of the ply", Dimension::stress, positive()};
+    modulus.default_words = "material.modulus of a linear law";
+    v.field(modulus);
+  });
 }
 
 void visit_physics(FieldVisitor& v, CaseFields& fields) {
@@ -289,12 +335,14 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
            false,
            "absent: no gravity",
            {"material"}});
-  optional_section(v, {"damping", "Mass-proportional damping", false, {"material"}}, c.damping, 0.0,
-                   [&v](double& alpha) {
-                     v.field({"alpha", &alpha,
-                              "Rate, of the unscaled ply: twice the damping ratio times the lowest "
-                              "angular frequency",
-                              Dimension::rate, from(0, 1e6), true});
+  optional_section(v, {"damping", "Mass-proportional damping", false, {"material"}}, fields.damping,
+                   DampingFields(), [&v](DampingFields& damping) { visit_damping(v, damping); });
+  optional_section(v, {"rest", "When a run may end before its time: once nothing moves", false, {"material"}},
+                   c.rest, RestCriterion(), [&v](RestCriterion& rest) {
+                     v.field({"speed", &rest.speed, "R.m.s. speed of the ply below which it is at rest",
+                              Dimension::velocity, positive()});
+                     v.field({"hold", &rest.hold, "For how long it must be so, on the simulation's clock",
+                              Dimension::time, from(0)});
                    });
   v.section({"supports", "What holds a ply without grippers", false, {"material"}}, !c.clamped.empty(), [&] {
     ChoiceList edges{{"left", "right", "bottom", "top"}, {}, {}};

@@ -116,11 +116,19 @@ struct MoldFields {
   double azimuth = 0;
 };
 
-/// One stress curve as the file states it.
+/// The curve at one rate, as the file states it.
+struct RateFields {
+  double rate = 0;
+  double factor = 1;
+  Curve curve;  ///< empty: the mode's own points
+};
+
+/// The stress curves of one mode as the file states them.
 struct CurveFields {
   Curve curve;
   double factor = 1;
   std::string source;
+  std::vector<RateFields> rates;  ///< empty: no dependence
 };
 
 /// The material as the file states it.
@@ -130,6 +138,16 @@ struct MaterialFields {
   double thickness = 0, areal_density = 0, transverse_shear_modulus = 0;
   CurveFields tension, compression, shear;
   double modulus = 0, shear_modulus = 0;
+  int shear_measure = 0;  ///< index of ShearMeasure
+  double rate_floor = Fabric().rate_floor, rate_filter = Fabric().rate_filter;
+};
+
+/// Mass damping as the file states it: seed, Eqs. (4) and (5).
+struct DampingFields {
+  int by = 0;  ///< 0 alpha, 1 strip
+  double alpha = 0;
+  double ratio = 1, length = 0;
+  std::optional<double> modulus;
 };
 
 /// A case as the file states it; sections that need work to become a Case stand beside it.
@@ -137,6 +155,7 @@ struct CaseFields {
   Case value;
   std::optional<MaterialFields> material;
   std::optional<MoldFields> mold;
+  std::optional<DampingFields> damping;
   FemOptions fem;
 };
 
@@ -144,6 +163,9 @@ inline constexpr const char* kCaseFormat = "drapeplan-case 1";
 
 /// States all fields of a case to `visitor`, in the order of the documentation.
 void visit_case(FieldVisitor& visitor, CaseFields& fields);
+
+/// The table that a mode's fields state; @param fields  without errors.
+StressTable stress_table(const CurveFields& fields);
 
 /// Fields into a case and back. `complete` expects fields without errors.
 void complete_case(CaseFields& fields);

@@ -59,6 +59,7 @@ Scene scene_of(const Case& value, const FemOptions& options) {
   scene.start = value.start;
   scene.gravity = value.gravity;
   scene.damping = value.damping;
+  scene.rest = value.rest;
   scene.mold = value.mold;
   scene.friction = value.friction;
   scene.rig = value.grippers;
@@ -115,12 +116,13 @@ Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, i
   }
   // A gap is never negative: a ply that ended inside the mold would look perfectly draped.
   if (drape.run.report.largest_penetration > case_.material.thickness) {
-    drape.score = failed_score("the ply ended " + std::to_string(1e3 * drape.run.report.largest_penetration) +
+    drape.score = failed_score("the ply came " + std::to_string(1e3 * drape.run.report.largest_penetration) +
                                " mm inside the mold: more than its thickness");
     return drape;
   }
-  const RunExtremes extremes{drape.run.largest_actuator_force, drape.run.largest_fibre_strain,
-                             drape.run.largest_fibre_compression, schedule.duration()};
+  const RunRecord& record = drape.run.state.record;
+  const RunExtremes extremes{record.actuator_force, record.fibre_strain, record.fibre_compression,
+                             schedule.duration()};
   drape.score = score_drape(model.scene().mesh, drape.run.final, *case_.mold, map_.boundary,
                             case_.material.thickness, case_.score, extremes);
   return drape;

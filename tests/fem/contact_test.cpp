@@ -123,7 +123,7 @@ struct Incline {
     scene.start = Start::on_mold;
     model.emplace(scene);
     state = model->flat_state(0);
-    NodalStiffness stiffness{std::vector<double>(9), std::vector<double>(9), std::vector<double>(9)};
+    NodalStiffness stiffness(9);
     model->terms().front()->add_stiffness(stiffness);
     const std::vector<double> area = nodal_areas(scene.mesh);
     for (size_t n = 0; n < size_t(model->node_count()); ++n) {

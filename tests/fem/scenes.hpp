@@ -16,9 +16,9 @@ inline Fabric linear_fabric(double E, double G, double G13) {
   Fabric fabric;
   fabric.thickness = 3e-4;
   fabric.areal_density = 0.314;
-  fabric.tension = {{0, 0.01}, {0, 0.01 * E}};
+  fabric.tension = Curve{{0, 0.01}, {0, 0.01 * E}};
   fabric.compression = fabric.tension;
-  fabric.shear = {{0, 1}, {0, G}};
+  fabric.shear = Curve{{0, 1}, {0, G}};
   fabric.transverse_shear_modulus = G13;
   return fabric;
 }
@@ -26,10 +26,10 @@ inline Fabric linear_fabric(double E, double G, double G13) {
 /// A fabric with the seed's traits: convex tension, soft compression, shear with plateau and locking.
 inline Fabric woven_fabric() {
   Fabric fabric = linear_fabric(0, 0, 2e5);
-  fabric.tension = {{0, 0.001, 0.003, 0.0067}, {0, 5.6e6, 23.5e6, 66.7e6}};
-  fabric.compression = {{0, 0.001, 0.02}, {0, 0.53e6, 1.43e6}};
+  fabric.tension = Curve{{0, 0.001, 0.003, 0.0067}, {0, 5.6e6, 23.5e6, 66.7e6}};
+  fabric.compression = Curve{{0, 0.001, 0.02}, {0, 0.53e6, 1.43e6}};
   const double degree = std::numbers::pi / 180;
-  fabric.shear = {{0, 10 * degree, 35 * degree, 50 * degree}, {0, 0.09e6, 0.11e6, 0.4e6}};
+  fabric.shear = Curve{{0, 10 * degree, 35 * degree, 50 * degree}, {0, 0.09e6, 0.11e6, 0.4e6}};
   return fabric;
 }
 

@@ -56,7 +56,7 @@ TEST(Simulate, ClosesItsBooksToRoundOffInADrape) {
   EXPECT_GT(result.report.energy.friction, 0);
   EXPECT_GT(result.report.energy.damping, 0);
   EXPECT_GT(result.report.energy.internal, 0);
-  EXPECT_LE(result.largest_fibre_strain, 0.02);
+  EXPECT_LE(result.state.record.fibre_strain, 0.02);
   EXPECT_LE(result.report.largest_link_error, 1e-7);
 }
 

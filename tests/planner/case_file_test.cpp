@@ -86,17 +86,17 @@ TEST(CaseFile, TheEchoKeepsEveryBit) {
   EXPECT_EQ(first.grippers->tilt_limit, second.grippers->tilt_limit);
   EXPECT_EQ(first.score.locking_angle_deg, second.score.locking_angle_deg);
   EXPECT_EQ(*first.friction, *second.friction);
-  EXPECT_EQ(first.material.compression.stress, second.material.compression.stress);
-  EXPECT_EQ(first.material.tension.strain, second.material.tension.strain);
-  EXPECT_EQ(first.material.shear.strain, second.material.shear.strain);
-  EXPECT_EQ(first.material.shear.stress, second.material.shear.stress);
+  EXPECT_EQ(first.material.compression.slowest().stress, second.material.compression.slowest().stress);
+  EXPECT_EQ(first.material.tension.slowest().strain, second.material.tension.slowest().strain);
+  EXPECT_EQ(first.material.shear.slowest().strain, second.material.shear.slowest().strain);
+  EXPECT_EQ(first.material.shear.slowest().stress, second.material.shear.slowest().stress);
 }
 
 TEST(CaseFile, TheFlexdraperCaseHoldsWhatThePaperSays) {
   const Case value = good_case(kCases / "flexdraper-5x5.json");
   EXPECT_EQ(value.material.thickness, 0.3e-3);
   EXPECT_EQ(value.material.areal_density, 0.314);
-  EXPECT_NEAR(value.material.tension(0.0067), 66.7e6, 1);
+  EXPECT_NEAR(value.material.tension.slowest()(0.0067), 66.7e6, 1);
   EXPECT_EQ(value.ply.width, 0.405);
   EXPECT_EQ(*value.friction, 1.5);
   EXPECT_EQ(*value.damping, 22);
@@ -132,9 +132,9 @@ TEST(CaseFile, OverridesReachReferencedFiles) {
   EXPECT_EQ(value.material.thickness, 0.4e-3);
   EXPECT_FALSE(value.gravity);
   const Case linear = good_case(kCases / "elastica.json", {"material.modulus=\"0.7 GPa\""});
-  EXPECT_EQ(linear.material.tension(0.01), 0.7e7);
-  EXPECT_EQ(linear.material.compression(0.01), 0.7e7);
-  EXPECT_EQ(linear.material.shear(0.5), 0.5 * 1e6);
+  EXPECT_EQ(linear.material.tension.slowest()(0.01), 0.7e7);
+  EXPECT_EQ(linear.material.compression.slowest()(0.01), 0.7e7);
+  EXPECT_EQ(linear.material.shear.slowest()(0.5), 0.5 * 1e6);
   EXPECT_EQ(resolved_case(linear)["material"]["modulus"], "700 MPa");
 }
 
@@ -149,10 +149,10 @@ TEST(CaseFile, FemIsTheReportingFidelityAndTheStartOfTheOthers) {
 TEST(CaseFile, FidelitiesMayHaveAnyName) {
   Case value = good_case(kCases / "flexdraper-5x5.json");
   value.fidelities["~2/a.b \xc3\xa9"].mesh_size = 0.02;
-  value.material.shear.stress[1] = 1e-310;  // denormal: text must not refuse it
+  value.material.shear.curves[0].stress[1] = 1e-310;  // denormal: text must not refuse it
   const ScratchFile echo(resolved_case(value).dump());
   EXPECT_EQ(good_case(echo.path).fidelities.at("~2/a.b \xc3\xa9").mesh_size, 0.02);
-  EXPECT_EQ(good_case(echo.path).material.shear.stress[1], 1e-310);
+  EXPECT_EQ(good_case(echo.path).material.shear.slowest().stress[1], 1e-310);
 }
 
 TEST(CaseFile, APolynomialMayBeStatedInMillimetres) {

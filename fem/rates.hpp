@@ -1,0 +1,157 @@
+// How fast strains change, and the stress that depends on it.
+//
+// Material rates are per second, steps are microseconds: the change of strain over one step is mostly noise.
+// So each strain e has a lagged one that follows it, tau de_l/dt = e - e_l, and the rate is (e - e_l) / tau:
+// an exponential average over the filter's time constant tau. A steady rate is met exactly.
+//
+// Only a strain whose magnitude grows is resisted more the faster it grows; one that shrinks follows the
+// slowest curve. (Resisting by |rate| both ways would drive a shrinking strain: a negative viscosity.)
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "fem/lanes.hpp"
+
+namespace drapeplan {
+
+/// A curve per rate, resampled on equal intervals of strain and of y = log(1 + rate / floor), bilinear
+/// between; constant beyond the slowest and the fastest curve, last slope beyond the last strain.
+class RateLookup {
+ public:
+  RateLookup() = default;
+
+  /// @param f  stress over strain [-] and rate [1/s];  @param intervals  of strain, over [lower, upper];
+  /// @param floor, fastest  [1/s], above 0.
+  RateLookup(const std::function<double(double, double)>& f, double lower, double upper, int intervals,
+             double floor, double fastest);
+
+  /// @param growth  rate over `floor`, not below 0.
+  [[nodiscard]] Lanes operator()(const Lanes& strain, const Lanes& growth) const {
+    const Place at = place(strain, growth);
+    Lanes slow0, slow1, fast0, fast1;
+    gather(at, slow0, slow1, fast0, fast1);
+    return slow0 + slow1 * strain + at.share * ((fast0 - slow0) + (fast1 - slow1) * strain);
+  }
+  /// Slope in strain while the lagged strain stays: d/de of the above with d growth / d strain = `gain`.
+  [[nodiscard]] Lanes slope(const Lanes& strain, const Lanes& growth, const Lanes& gain) const {
+    const Place at = place(strain, growth);
+    Lanes slow0, slow1, fast0, fast1;
+    gather(at, slow0, slow1, fast0, fast1);
+    const Lanes by_rate = (fast0 - slow0) + (fast1 - slow1) * strain;  // per interval of y
+    return slow1 + at.share * (fast1 - slow1) +
+           std::experimental::abs(by_rate) * Lanes(per_rate_step_) * gain / (Lanes(1.0) + growth);
+  }
+  /// Largest of these slopes, over all strains of the table and all rates.
+  [[nodiscard]] double largest_slope(double gain) const;
+
+ private:
+  struct Place {
+    Lanes share;  ///< between the slower and the faster row
+    std::array<size_t, size_t(kLanes)> index;
+  };
+  [[nodiscard]] Place place(const Lanes& strain, const Lanes& growth) const {
+    namespace stdx = std::experimental;
+    const Lanes piece = stdx::clamp((strain - Lanes(lower_)) * Lanes(per_step_), Lanes(0.0), Lanes(last_));
+    const Lanes y = stdx::min(stdx::log(Lanes(1.0) + growth) * Lanes(per_rate_step_), Lanes(rows_));
+    const Lanes row = stdx::min(stdx::floor(y), Lanes(rows_ - 1));
+    Place at{y - row, {}};
+    for (size_t l = 0; l < size_t(kLanes); ++l)
+      at.index[l] = (size_t(int(row[l])) * pieces_ + size_t(int(piece[l]))) * 2;
+    return at;
+  }
+  void gather(const Place& at, Lanes& slow0, Lanes& slow1, Lanes& fast0, Lanes& fast1) const {
+    alignas(std::experimental::memory_alignment_v<Lanes>) double value[4][size_t(kLanes)];
+    for (size_t l = 0; l < size_t(kLanes); ++l) {
+      const double* slow = &line_[at.index[l]];
+      const double* fast = slow + 2 * pieces_;
+      value[0][l] = slow[0];
+      value[1][l] = slow[1];
+      value[2][l] = fast[0];
+      value[3][l] = fast[1];
+    }
+    slow0 = load(value[0]);
+    slow1 = load(value[1]);
+    fast0 = load(value[2]);
+    fast1 = load(value[3]);
+  }
+
+  double lower_ = 0, per_step_ = 1, last_ = 0, per_rate_step_ = 1, rows_ = 1;
+  size_t pieces_ = 0;
+  std::vector<double> line_;  ///< by rate, by piece: intercept and slope
+};
+
+/// Both tables of a fabric.
+struct RateTables {
+  RateLookup fibre, shear;  ///< as in KernelMaterial
+  double gain = 0;          ///< 1 / (filter time * floor): growth per unit of strain ahead of its lagged one
+};
+
+/// Slopes of a block of elements whose law depends on rates, while lagged strains stay.
+class RateSlopes {
+ public:
+  /// @param lagged  of the block's first element, slots `stride` apart.
+  RateSlopes(const RateTables& tables, const double* lagged, size_t stride)
+      : tables_(tables), stride_(stride), seen_(lagged) {}
+
+  [[nodiscard]] Lanes fibre_slope(const Lanes& strain, size_t slot) const {
+    const Lanes gain(tables_.gain);
+    return tables_.fibre.slope(strain, growth(strain, slot, gain), gain);
+  }
+  [[nodiscard]] Lanes shear_slope(const Lanes& sine, size_t slot) const {
+    const Lanes gain = shear_gain(sine);
+    return tables_.shear.slope(sine, growth(sine, slot, gain), gain);
+  }
+
+ protected:
+  /// Rate at which the strain's magnitude grows, over the floor.
+  [[nodiscard]] Lanes growth(const Lanes& strain, size_t slot, const Lanes& gain) const {
+    namespace stdx = std::experimental;
+    const Lanes ahead = (strain - load(seen_ + slot * stride_)) * gain;
+    return stdx::max(Lanes(0.0), stdx::copysign(Lanes(1.0), strain) * ahead);
+  }
+  /// The rate of the angle is that of its sine over its cosine.
+  [[nodiscard]] Lanes shear_gain(const Lanes& sine) const {
+    namespace stdx = std::experimental;
+    constexpr double kLeastCosine2 = 0.04;  // 78.5 degrees: where the table of the shear stress ends
+    return Lanes(tables_.gain) / stdx::sqrt(stdx::max(Lanes(1.0) - sine * sine, Lanes(kLeastCosine2)));
+  }
+
+  const RateTables& tables_;
+  size_t stride_;
+
+ private:
+  const double* seen_;
+};
+
+/// Stresses of such a block. Moves each lagged strain on by one step after its use.
+class RateLaw : public RateSlopes {
+ public:
+  /// @param follow  share of the difference by which lagged strains follow in this step.
+  RateLaw(const RateTables& tables, double* lagged, size_t stride, double follow)
+      : RateSlopes(tables, lagged, stride), lagged_(lagged), follow_(follow) {}
+
+  [[nodiscard]] Lanes fibre(const Lanes& strain, size_t slot) {
+    const Lanes stress = tables_.fibre(strain, growth(strain, slot, Lanes(tables_.gain)));
+    move_on(strain, slot);
+    return stress;
+  }
+  [[nodiscard]] Lanes shear(const Lanes& sine, size_t slot) {
+    const Lanes stress = tables_.shear(sine, growth(sine, slot, shear_gain(sine)));
+    move_on(sine, slot);
+    return stress;
+  }
+
+ private:
+  void move_on(const Lanes& strain, size_t slot) {
+    double* at = lagged_ + slot * stride_;
+    const Lanes old = load(at);
+    store(old + Lanes(follow_) * (strain - old), at);
+  }
+
+  double* lagged_;
+  double follow_;
+};
+
+}  // namespace drapeplan

@@ -1,0 +1,18 @@
+// How large a step may be: the bound that a run plays, and the true limit to judge it by.
+#pragma once
+
+#include "fem/workspace.hpp"
+
+namespace drapeplan {
+
+/// Stable step at a state [s]: summed bounds of all terms, with the slopes that their laws have at and near
+/// the state. At least Model::stable_dt(). @param scratch  of the model's nodes.
+double stable_step(const Model& model, const State& state, NodalStiffness& scratch);
+
+/// True stable step of the linearised system at a state [s]: 2 / largest frequency by Lanczos' method, with
+/// the stiffness by central differences of all forces. Pads and clamped nodes are held. Costs about a hundred
+/// evaluations of all forces: for tests and studies. From above: the largest frequency is approached from
+/// below, to 0.1 % or better.
+double true_stable_step(const Model& model, const State& state);
+
+}  // namespace drapeplan
