@@ -13,7 +13,7 @@ struct FemOptions {
   int step_interval = 32;    ///< steps between two choices of the step; 0: one step, safe for all strains
   bool rates = true;         ///< false: slowest curves only, whatever tables the material has
   double hourglass = 1;      ///< hourglass stiffness over the physical one of a fibre in compression
-  double contact_stiffness = 0.1;  ///< of a free node, over its membrane stiffness
+  double contact_stiffness = 0.05; ///< of a free node, over its membrane stiffness
   double contact_damping = 0.2;    ///< share of the critical damping of a node on its contact spring
 };
 
