@@ -13,14 +13,6 @@
 namespace drapeplan {
 namespace {
 
-/// Squared radius of gyration of directors, per unit of nodal mass [m^2]: that of the section, enlarged like
-/// A/9 as in established explicit codes, and further where the director's own rows would otherwise govern the
-/// step.
-double gyration_squared(double thickness, double area, double translation, double rotation) {
-  constexpr double kElementShare = 1.0 / 9;
-  return std::max(thickness * thickness / 12 + kElementShare * area, rotation / translation);
-}
-
 /// Largest angle per step of a pad on its actuator: its critical damping, explicit, is stable up to it.
 constexpr double kServoStep = 0.5;
 
@@ -55,20 +47,23 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   terms_.push_back(std::move(shell));
   NodalStiffness stiffness(mesh.node_count());
   terms_.front()->add_stiffness(stiffness);
+  // Directors weigh as much as their stiffness demands (see shell_bounds.hpp), so that they never govern the step.
+  gyration2_.resize(n);
+  for (size_t k = 0; k < n; ++k) gyration2_[k] = stiffness.rotation[k] / stiffness.translation[k];
   if (scene_.gravity) terms_.push_back(make_gravity(unscaled, *scene_.gravity));
+  if (scene_.loads) {
+    terms_.push_back(make_loads(*scene_.loads, area));
+    terms_.back()->add_stiffness(stiffness);
+  }
 
   mass_.assign(padded(int(n)), 0.0);
   inertia_ = inverse_mass_ = inverse_inertia_ = mass_;
-  gyration2_.resize(n);
   own_mass_.resize(n);
   // Mass per stiffness below which the target step would be missed.
   const double rise = scene_.mold ? contact_rise(options) : 1;
   const double needed = std::pow(rise * options.target_step / (2 * options.step_safety), 2);
   for (size_t k = 0; k < n; ++k) {
-    gyration2_[k] =
-        gyration_squared(scene_.fabric.thickness, area[k], stiffness.translation[k], stiffness.rotation[k]);
-    const double row = stiffness.translation[k] + stiffness.coupling[k] / std::sqrt(gyration2_[k]);
-    own_mass_[k] = std::max(options.mass_scaling * unscaled[k], needed * row);
+    own_mass_[k] = std::max(options.mass_scaling * unscaled[k], needed * stiffness.translation[k]);
     mass_[k] = own_mass_[k];
     inertia_[k] = gyration2_[k] * mass_[k];
   }
@@ -78,6 +73,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
 
   std::vector<int> held = scene_.clamped;
   for (const int node : held) mass_[size_t(node)] = 0;
+  for (const int node : scene_.pinned) mass_[size_t(node)] = 0;
   if (scene_.rig) {
     const Eigen::Rotation2Dd turn(scene_.angle);
     std::vector<Eigen::Vector2d> place;
@@ -85,7 +81,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
       place.emplace_back(scene_.position + turn * scene_.rig->place(g));
     rig_.emplace(*scene_.rig, mesh.rest, mass_, inertia_, place, scene_.angle);
     for (const int node : rig_->tied()) {
-      if (mass_[size_t(node)] == 0) throw std::invalid_argument("a node under a pad is clamped");
+      if (mass_[size_t(node)] == 0) throw std::invalid_argument("a node under a pad is clamped or pinned");
     }
     held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
   }
@@ -132,9 +128,8 @@ void Model::add_contact(NodalStiffness& stiffness) {
 double Model::stable_dt(const NodalStiffness& stiffness) const {
   double largest = 0;  // bound of the highest squared frequency
   for (size_t k = 0; k < own_mass_.size(); ++k) {
-    const double coupling = stiffness.coupling[k] / std::sqrt(gyration2_[k]);
-    const double row = std::max(stiffness.translation[k], stiffness.rotation[k] / gyration2_[k]) + coupling;
-    largest = std::max(largest, row / own_mass_[k]);
+    const double bound = std::max(stiffness.translation[k], stiffness.rotation[k] / gyration2_[k]);
+    largest = std::max(largest, bound / own_mass_[k]);
   }
   return 2 / std::sqrt(largest);
 }
@@ -171,6 +166,7 @@ std::vector<std::string> Model::term_names() const {
   if (scene_.damping) names.emplace_back("mass damping");
   if (rig_) names.emplace_back(scene_.rig->interlinks ? "gripper rig with interlinks" : "gripper rig");
   if (!scene_.clamped.empty()) names.emplace_back("clamp");
+  if (!scene_.pinned.empty()) names.emplace_back("pin");
   return names;
 }
 

@@ -8,6 +8,7 @@
 
 #include "fem/fabric.hpp"
 #include "fem/gripper_rig.hpp"
+#include "fem/loads.hpp"
 #include "fem/mesh.hpp"
 #include "fem/options.hpp"
 #include "fem/shell.hpp"
@@ -31,7 +32,9 @@ struct Scene {
   std::optional<Mold> mold;
   std::optional<double> friction;  ///< needs a mold
   std::optional<RigOptions> rig;
+  std::optional<Loads> loads;
   std::vector<int> clamped;           ///< nodes that never move or turn
+  std::vector<int> pinned;            ///< nodes that never move; their directors turn
   std::optional<RestCriterion> rest;  ///< when a run may end before its time
 };
 
@@ -52,14 +55,15 @@ class Model {
   [[nodiscard]] double stable_dt() const { return stable_dt_; }
   /// The step played where it does not change with the state: step_safety times stable_dt [s].
   [[nodiscard]] double dt() const { return scene_.options.step_safety * stable_dt_; }
-  /// Largest stable step for given stiffness rows [s]: Gershgorin's rows over the nodes' own masses. Nodes
-  /// that are tied or clamped count as well: what holds them only lowers frequencies.
+  /// Largest stable step for given stiffness bounds over the nodes' own masses [s]. Nodes that are tied or
+  /// clamped count as well: what holds them only lowers frequencies.
   [[nodiscard]] double stable_dt(const NodalStiffness& stiffness) const;
   /// Damping rate on the scaled mass [1/s]: with a mass s times larger, modes are sqrt(s) times slower, and
   /// so is what damps them critically. s: of the whole ply.
   [[nodiscard]] double alpha() const { return alpha_; }
 
-  /// Scaled masses [kg] and director inertias [kg m^2] of free nodes; 0 for clamped and tied ones; padded.
+  /// Scaled masses [kg] and director inertias [kg m^2] of free nodes; 0 for clamped and tied ones; pinned
+  /// ones have no mass but an inertia; padded.
   [[nodiscard]] const std::vector<double>& mass() const { return mass_; }
   [[nodiscard]] const std::vector<double>& inertia() const { return inertia_; }
   /// 1 / mass, 1 / inertia, 0 for clamped and tied nodes; padded.

@@ -17,7 +17,7 @@ Energies energies(const Model& model, const State& state) {
   Energies e;
   e.kinetic = kinetic_energy(model, state);
   e.internal = -work(Book::internal);
-  e.external = work(Book::gravity) + work(Book::actuator);
+  e.external = work(Book::gravity) + work(Book::actuator) + work(Book::load);
   e.friction = -work(Book::friction);
   e.contact = -work(Book::contact);
   e.damping = -work(Book::damping);

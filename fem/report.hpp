@@ -11,7 +11,7 @@ namespace drapeplan {
 struct Energies {
   double kinetic = 0;
   double internal = 0;       ///< work done on the fabric, its hourglass part included
-  double external = 0;       ///< work of gravity and of the actuators
+  double external = 0;       ///< work of gravity, loads and actuators
   double friction = 0;       ///< taken by friction, its elastic part included
   double contact = 0;        ///< stored by normal contact and taken by its dashpots
   double damping = 0;        ///< taken by mass damping

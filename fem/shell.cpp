@@ -93,6 +93,11 @@ ElementGeometry<double> element_geometry(const Mesh& mesh, const std::array<int,
   const Eigen::Vector2d skew = X[0] - X[1] + X[2] - X[3];
   g.skew1 = skew.x();
   g.skew2 = skew.y();
+  const Eigen::Vector2d r = 0.25 * (ac - bd), s = 0.25 * (ac + bd);
+  g.r11 = r.x();
+  g.r12 = r.y();
+  g.r21 = s.x();
+  g.r22 = s.y();
   return g;
 }
 
@@ -123,16 +128,15 @@ class ShellTerm final : public Shell {
     return {{Book::internal, VectorField(n), VectorField(n)}};
   }
 
-  /// Sums of absolute rows of the rest stiffness with the steepest slopes.
+  /// In the rest shape, with the steepest slopes.
   void add_stiffness(NodalStiffness& stiffness) const override {
     const auto section = steepest_section(material_.thickness, fibre_slope_, shear_slope_);
     for (size_t e = 0; e < mesh_.quads.size(); ++e) {
-      const ElementRows<double> rows = element_rows(geometry_[e], material_, section);
-      for (size_t c = 0; c < 4; ++c) {
-        const auto node = size_t(mesh_.quads[e][c]);
-        stiffness.translation[node] += rows.translation[c % 2];
-        stiffness.rotation[node] += rows.rotation[c % 2];
-        stiffness.coupling[node] += rows.coupling[c % 2];
+      const double bound = element_bound(geometry_[e], material_, section);
+      const double gyration2 = gyration_squared(geometry_[e], material_.thickness);
+      for (const int node : mesh_.quads[e]) {
+        stiffness.translation[size_t(node)] += bound;
+        stiffness.rotation[size_t(node)] += bound * gyration2;
       }
     }
   }
@@ -144,13 +148,13 @@ class ShellTerm final : public Shell {
       load_corners(state, block, x, d);
       const auto law = slopes_of(state, b);
       const auto section = section_tangent<N>(block.geometry, material_, law, x, d);
-      const ElementRows<Lanes> rows = element_rows(block.geometry, material_, section);
-      for (size_t c = 0; c < 4; ++c) {
-        for (size_t l = 0; l < size_t(block.used); ++l) {
+      const Lanes bound = element_bound(block.geometry, material_, section);
+      const Lanes turn = bound * gyration_squared(block.geometry, material_.thickness);
+      for (size_t l = 0; l < size_t(block.used); ++l) {
+        for (size_t c = 0; c < 4; ++c) {
           const auto node = size_t(block.node[c][l]);
-          stiffness.translation[node] += rows.translation[c % 2][l];
-          stiffness.rotation[node] += rows.rotation[c % 2][l];
-          stiffness.coupling[node] += rows.coupling[c % 2][l];
+          stiffness.translation[node] += bound[l];
+          stiffness.rotation[node] += turn[l];
         }
       }
     }
@@ -301,6 +305,10 @@ size_t ShellTerm<N, kRates>::add_block(size_t first) {
     block.geometry.half2[l] = g.half2;
     block.geometry.skew1[l] = g.skew1;
     block.geometry.skew2[l] = g.skew2;
+    block.geometry.r11[l] = g.r11;
+    block.geometry.r12[l] = g.r12;
+    block.geometry.r21[l] = g.r21;
+    block.geometry.r22[l] = g.r22;
   }
   blocks_.push_back(block);
   return left;

@@ -1,7 +1,5 @@
-// How stiff a shell element is at most: rows of its tangent, for the stable step.
+// How stiff a shell element is at most, for the stable step.
 #pragma once
-
-#include <array>
 
 #include "fem/shell_kernel.hpp"
 
@@ -16,12 +14,6 @@ struct SectionStiffness {
   V shear;               ///< of the shear angle [N/m]
 };
 
-/// Sums of absolute rows of an element's tangent, for corners 0 and 2, and for corners 1 and 3.
-template <class V>
-struct ElementRows {
-  std::array<V, 2> translation, rotation, coupling;  ///< [N/m], [N m], [N]
-};
-
 /// The section where every fibre has the modulus `fibre` and the shear curve the slope `shear` [Pa]. A fibre
 /// force grows with curvature most where one half of the section carries and the other does not: t / 8.
 inline SectionStiffness<double> steepest_section(double thickness, double fibre, double shear) {
@@ -30,32 +22,49 @@ inline SectionStiffness<double> steepest_section(double thickness, double fibre,
   return {stretch, stretch, couple, couple, bend, bend, thickness * shear};
 }
 
-/// Both fibre families may act fully on the same node, but never in the same pattern: along one wave,
-/// sin^2 a cos^2 b + cos^2 a sin^2 b <= 1, whatever the shear angle. So the larger counts.
+/// Squared radius of gyration of directors [m^2]: that of the section, enlarged by a ninth of the element's area
+/// as in established explicit codes, so that bending and transverse shear never govern the step.
 template <class V>
-ElementRows<V> element_rows(const ElementGeometry<V>& g, const KernelMaterial& material,
-                            const SectionStiffness<V>& section) {
-  using std::abs, std::max, std::min;
+V gyration_squared(const ElementGeometry<V>& g, double thickness) {
+  constexpr double kElementShare = 1.0 / 9;
+  return V(thickness * thickness / 12) + V(kElementShare) * g.area;
+}
+
+/// Bound k of an element's tangent [N/m]: its energy's second variation is at most k times the sum over corners
+/// of |dx|^2 + gyration^2 |dd|^2.
+///
+/// The variation is a sum of squares, one per mode: stiffness times (vector . corner values)^2. Modes whose
+/// vectors are orthogonal do not add: the largest counts. In a rectangle all are (the gradients b_1, b_2 and h
+/// are, and so are the directions along a fibre, across it and off the surface); what distortion adds comes on
+/// top as products.
+template <class V>
+V element_bound(const ElementGeometry<V>& g, const KernelMaterial& material, const SectionStiffness<V>& section) {
+  using std::abs, std::max, std::sqrt;
+  const V gyration2 = gyration_squared(g, material.thickness), per_gyration = V(1.0) / sqrt(gyration2);
+  const V b11 = V(2.0) * (g.b10 * g.b10 + g.b11 * g.b11), b22 = V(2.0) * (g.b20 * g.b20 + g.b21 * g.b21);
+  const V b12 = V(2.0) * abs(g.b10 * g.b20 + g.b11 * g.b21);
+  const auto with_bending = [&](const V& stretch, const V& couple, const V& bend) {
+    return max(stretch, bend * per_gyration * per_gyration) + couple * per_gyration;
+  };
+  const V fibre1 = with_bending(section.stretch1, section.couple1, section.bend1);
+  const V fibre2 = with_bending(section.stretch2, section.couple2, section.bend2);
+  const V oblique = sqrt(fibre1 * fibre2) + V(2.0) * sqrt(max(fibre1, fibre2) * section.shear);
+  const V in_plane =
+      g.area * (max(max(fibre1 * b11, fibre2 * b22), section.shear * (b11 + b22)) + b12 * oblique);
+
   const HourglassStiffness<V> h = hourglass_stiffness(g, material);
-  const V transverse(material.transverse), t2(material.thickness * material.thickness / 12);
-  const std::array<V, 2> b1{abs(g.b10), abs(g.b11)}, b2{abs(g.b20), abs(g.b21)};
-  const V sum1 = V(2.0) * (b1[0] + b1[1]), sum2 = V(2.0) * (b2[0] + b2[1]);
-  // Transverse shear per unit of hourglass displacement.
-  const V warp = V(0.25) / min(g.half1, g.half2);
-  ElementRows<V> rows;
-  for (size_t c = 0; c < 2; ++c) {
-    const V row1 = b1[c] * sum1, row2 = b2[c] * sum2;
-    const V shear = section.shear * (b1[c] + b2[c]) * (sum1 + sum2);
-    rows.translation[c] = g.area * (max(section.stretch1 * row1, section.stretch2 * row2) + shear +
-                                    transverse * (row1 + row2)) +
-                          V(4.0) * (h.membrane + g.area * transverse * V(2.0 / 3) * warp * warp);
-    rows.rotation[c] = g.area * (max(section.bend1 * row1, section.bend2 * row2) + t2 * shear +
-                                 transverse * V(0.5 + 2.0 / 3)) +
-                       V(4.0) * h.director;
-    rows.coupling[c] =
-        g.area * (max(section.couple1 * row1, section.couple2 * row2) + transverse * (b1[c] + b2[c] + warp));
-  }
-  return rows;
+  const V skewed = g.skew1 * g.skew1 * b11 + g.skew2 * g.skew2 * b22;
+  const V hourglass = V(4.0) * max(h.membrane, h.director / gyration2);
+  const V mixed = sqrt(skewed * h.membrane * in_plane);
+
+  // Mean shear along both fibres, and the linear part along the element's own directions r and s.
+  const V r2 = g.r11 * g.r11 + g.r12 * g.r12, s2 = g.r21 * g.r21 + g.r22 * g.r22;
+  const V det = g.r11 * g.r22 - g.r12 * g.r21, det2 = det * det;
+  const V mean = max(b11, b22) + b12 + V(0.5) / gyration2;
+  const V linear = V(1.0 / 12) * ((r2 + s2) / det2 + r2 * s2 / (det2 * gyration2));
+  const V bent = V(1.0) + (abs(g.skew1) + abs(g.skew2)) / sqrt(r2 + s2);
+  const V transverse = g.area * V(material.transverse) * max(mean, linear) * bent;
+  return max(max(in_plane, hourglass), transverse) + mixed;
 }
 
 /// The section's tangent in the element's state. `law` gives slopes near the strains of each section point.

@@ -12,9 +12,10 @@
 // n_1) / |f_1|.
 //
 // Hourglass: hx = h.x - (h.X) a_1 - (h.Y) a_2 vanishes for every linear field; likewise hd. Their stiffness
-// is the physical one of the bilinear element for a fibre in compression (in-plane part and directors), and
-// the linear part of the transverse shear strain that the middle misses, as in the MITC4 element (Dvorkin and
-// Bathe 1984).
+// is the physical one of the bilinear element for a fibre in compression (in-plane part and directors).
+//
+// Transverse shear is that of the MITC4 element (Dvorkin and Bathe 1984): along the element's own directions
+// it is taken at the middles of its edges, where a field of constant curvature has none, whatever the shape.
 #pragma once
 
 #include <array>
@@ -31,6 +32,8 @@ struct ElementGeometry {
   V area;                ///< [m^2]
   V half1, half2;        ///< half the element's length along each fibre [m]
   V skew1, skew2;        ///< h.X and h.Y: zero for a parallelogram [m]
+  V r11, r12, r21,
+      r22;  ///< half the element along its own directions: X,r = (r11, r12), X,s = (r21, r22) [m]
 };
 
 /// Corner values of one element, or of a block: positions or directors.
@@ -123,6 +126,52 @@ HourglassStiffness<V> hourglass_stiffness(const ElementGeometry<V>& g, const Ker
   return {V(material.hourglass_modulus * t) * shape, V(material.hourglass_modulus * t * t * t / 12) * shape};
 }
 
+/// Transverse shear of an element: its energy per rest area, and the derivatives of that by its arguments.
+///
+/// With r and s along the element, x,r = r11 a_1 + r12 a_2 and so on, and y = (h.x)/4, the shear along r at
+/// the middles of the edges s = -1 and s = 1 is (x,r -+ y).(dm -+ d,s): a mean x,r.dm + y.d,s and a linear
+/// part x,r.d,s + y.dm; likewise along s. In y.d,s and y.d,r only the flat part of y counts (skew); the rest
+/// is of second order in the warp of an element.
+template <class V>
+struct TransverseShear {
+  V on_s1, on_s2, on_warp;           ///< by a_k.dm and hx.dm
+  V on_b11, on_b12, on_b21, on_b22;  ///< by a_i.c_j
+  V energy;
+};
+
+template <class V>
+TransverseShear<V> transverse_shear(const ElementGeometry<V>& g, const ElementMotion<V>& m, const V& q) {
+  const V quarter(0.25), det = g.r11 * g.r22 - g.r12 * g.r21, inverse = V(1.0) / det;
+  const V s1 = dot(m.a1, m.mean), s2 = dot(m.a2, m.mean);
+  const V b11 = dot(m.a1, m.c1), b12 = dot(m.a1, m.c2), b21 = dot(m.a2, m.c1), b22 = dot(m.a2, m.c2);
+  const V b1r = g.r11 * b11 + g.r12 * b12, b2r = g.r11 * b21 + g.r12 * b22;  // a_k.d,r
+  const V b1s = g.r21 * b11 + g.r22 * b12, b2s = g.r21 * b21 + g.r22 * b22;  // a_k.d,s
+  const V k1 = quarter * g.skew1, k2 = quarter * g.skew2;
+  const V yr = inverse * (k1 * b1r + k2 * b2r), ys = inverse * (k1 * b1s + k2 * b2s);
+  const V shear1 = s1 + g.r22 * ys - g.r12 * yr, shear2 = s2 + g.r11 * yr - g.r21 * ys;
+  const V y = quarter * dot(m.hx, m.mean) + k1 * s1 + k2 * s2;
+  const V lr = g.r11 * b1s + g.r12 * b2s + y, ls = g.r21 * b1r + g.r22 * b2r + y;
+  const V third = q * V(1.0 / 3) * inverse * inverse;
+  const V q1 = q * shear1, q2 = q * shear2;
+  const V qr = third * (g.r22 * g.r22 + g.r12 * g.r12) * lr,
+          qs = third * (g.r11 * g.r11 + g.r21 * g.r21) * ls;
+
+  const V on_ys = inverse * (q1 * g.r22 - q2 * g.r21), on_yr = inverse * (q2 * g.r11 - q1 * g.r12),
+          on_y = qr + qs;
+  const V on_b1s = g.r11 * qr + k1 * on_ys, on_b2s = g.r12 * qr + k2 * on_ys;
+  const V on_b1r = g.r21 * qs + k1 * on_yr, on_b2r = g.r22 * qs + k2 * on_yr;
+  TransverseShear<V> out;
+  out.on_s1 = q1 + k1 * on_y;
+  out.on_s2 = q2 + k2 * on_y;
+  out.on_warp = quarter * on_y;
+  out.on_b11 = g.r21 * on_b1s + g.r11 * on_b1r;
+  out.on_b12 = g.r22 * on_b1s + g.r12 * on_b1r;
+  out.on_b21 = g.r21 * on_b2s + g.r11 * on_b2r;
+  out.on_b22 = g.r22 * on_b2s + g.r12 * on_b2r;
+  out.energy = V(0.5) * (q1 * shear1 + q2 * shear2 + qr * lr + qs * ls);
+  return out;
+}
+
 /// Forces that the element exerts on its corners: on positions [N] and on directors [N m].
 /// @param law  stresses at section points, like StaticLaw.
 template <int N, class V, class Law>
@@ -151,21 +200,16 @@ void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, L
     m2 = m2 + s * p2;
   }
 
-  // Transverse shear at the middle, and its linear part (MITC4).
-  const V q(material.transverse);
-  const V s1 = dot(m.a1, m.mean), s2 = dot(m.a2, m.mean), warp = dot(m.hx, m.mean);
-  const V quarter1 = V(0.25) / g.half1, quarter2 = V(0.25) / g.half2;
-  const V l1 = (q * V(1.0 / 3)) * (quarter1 * warp + g.half2 * dot(m.a1, m.c2));
-  const V l2 = (q * V(1.0 / 3)) * (quarter2 * warp + g.half1 * dot(m.a2, m.c1));
-  n1 = n1 + (q * s1) * m.mean + (l1 * g.half2) * m.c2;
-  n2 = n2 + (q * s2) * m.mean + (l2 * g.half1) * m.c1;
-  m2 = m2 + (l1 * g.half2) * m.a1;
-  m1 = m1 + (l2 * g.half1) * m.a2;
-  const V l = l1 * quarter1 + l2 * quarter2;
+  const TransverseShear<V> q = transverse_shear(g, m, V(material.transverse));
+  n1 = n1 + q.on_s1 * m.mean + q.on_b11 * m.c1 + q.on_b12 * m.c2;
+  n2 = n2 + q.on_s2 * m.mean + q.on_b21 * m.c1 + q.on_b22 * m.c2;
+  m1 = m1 + q.on_b11 * m.a1 + q.on_b21 * m.a2;
+  m2 = m2 + q.on_b12 * m.a1 + q.on_b22 * m.a2;
+  const V warp = dot(m.hx, m.mean);
   const HourglassStiffness<V> h = hourglass_stiffness(g, material);
   const Vec3<V> on_mean =
-      g.area * ((q * s1) * m.a1 + (q * s2) * m.a2 + l * m.hx) - (h.membrane * warp) * m.hx;
-  const Vec3<V> on_hx = (g.area * l - h.membrane * warp) * m.mean + h.membrane * m.hx;
+      g.area * (q.on_s1 * m.a1 + q.on_s2 * m.a2 + q.on_warp * m.hx) - (h.membrane * warp) * m.hx;
+  const Vec3<V> on_hx = (g.area * q.on_warp - h.membrane * warp) * m.mean + h.membrane * m.hx;
   const Vec3<V> on_hd = h.director * m.hd;
 
   // From derivatives back to corners; a force is minus the energy's derivative.
@@ -201,14 +245,11 @@ ElementEnergy shell_energy(const ElementGeometry<double>& g, const KernelMateria
     density += w * (material.fibre.integral(length1 - 1) + material.fibre.integral(length2 - 1) +
                     material.shear.integral(sine));
   }
-  const double s1 = dot(m.a1, m.mean), s2 = dot(m.a2, m.mean), warp = dot(m.hx, m.mean);
-  const double l1 = 0.25 / g.half1 * warp + g.half2 * dot(m.a1, m.c2);
-  const double l2 = 0.25 / g.half2 * warp + g.half1 * dot(m.a2, m.c1);
+  const double warp = dot(m.hx, m.mean);
   const HourglassStiffness<double> h = hourglass_stiffness(g, material);
   ElementEnergy energy;
-  energy.fabric = g.area * (density + 0.5 * material.transverse * (s1 * s1 + s2 * s2));
-  energy.hourglass = g.area * material.transverse / 6 * (l1 * l1 + l2 * l2) +
-                     0.5 * h.membrane * (dot(m.hx, m.hx) - warp * warp) + 0.5 * h.director * dot(m.hd, m.hd);
+  energy.fabric = g.area * (density + transverse_shear(g, m, material.transverse).energy);
+  energy.hourglass = 0.5 * h.membrane * (dot(m.hx, m.hx) - warp * warp) + 0.5 * h.director * dot(m.hd, m.hd);
   return energy;
 }
 

@@ -11,8 +11,8 @@
 namespace drapeplan {
 
 /// Books of work, one entry each. See Energies for their meaning.
-enum class Book { internal, gravity, contact, friction, damping, actuator, interlink, stop };
-inline constexpr size_t kBooks = 8;
+enum class Book { internal, gravity, contact, friction, damping, actuator, interlink, stop, load };
+inline constexpr size_t kBooks = 9;
 
 /// A rigid pad: its centre on the ply's mid-surface, its orientation and its half-step velocities.
 struct PadState {

@@ -17,17 +17,17 @@ struct Forces {
   VectorField moment;  ///< on directors [N m]; empty if the term never touches them
 };
 
-/// Upper bounds of the stiffness that acts on each node: sums of absolute rows. Limits of terms add.
+/// A diagonal that is nowhere below the stiffness of all terms: u.K u <= sum over nodes of translation |x|^2 +
+/// rotation |d|^2. Bounds of terms add, and those of elements at their nodes; then no squared frequency is
+/// above the largest bound over mass (Fried's element bound, weighted per node).
 struct NodalStiffness {
-  explicit NodalStiffness(int nodes)
-      : translation(size_t(nodes), 0.0), rotation(size_t(nodes), 0.0), coupling(size_t(nodes), 0.0) {}
+  explicit NodalStiffness(int nodes) : translation(size_t(nodes), 0.0), rotation(size_t(nodes), 0.0) {}
   void clear() {
-    for (auto* list : {&translation, &rotation, &coupling}) std::fill(list->begin(), list->end(), 0.0);
+    for (auto* list : {&translation, &rotation}) std::fill(list->begin(), list->end(), 0.0);
   }
 
   std::vector<double> translation;  ///< [N/m]
   std::vector<double> rotation;     ///< of directors [N m]
-  std::vector<double> coupling;     ///< between both [N]
 };
 
 /// A term is const after the model is built; candidates and threads share it. What changes lives in State,

@@ -6,6 +6,7 @@
 #include "fem/simulate.hpp"
 #include "fem/workspace.hpp"
 #include "tests/fem/scenes.hpp"
+#include "tests/fem/term_kit.hpp"
 
 namespace drapeplan {
 namespace {
@@ -30,10 +31,6 @@ class ShellTerms : public ::testing::TestWithParam<ShellCase> {
     forces = model->terms().front()->entries();
     nodes = size_t(model->node_count());
   }
-  double energy() {
-    const ShellEnergy e = model->shell().stored_energy(state);
-    return e.fabric + e.hourglass;
-  }
   void compute() { model->terms().front()->forces(state, forces.data()); }
 
   Scene scene;
@@ -51,69 +48,16 @@ INSTANTIATE_TEST_SUITE_P(PointsAndMeshes, ShellTerms,
                                   (instance.param.distorted ? "PointsDistorted" : "Points");
                          });
 
-TEST_P(ShellTerms, HaveNoForceInTheFlatRestShape) {
-  compute();
-  for (size_t n = 0; n < nodes; ++n) {
-    // Round-off of positions of 0.1 m against a fibre stiffness of 1e10 Pa * 3e-4 m.
-    EXPECT_LE(get(forces[0].force, n).norm(), 1e-8);
-    EXPECT_LE(get(forces[0].moment, n).norm(), 1e-12);
-  }
-}
-
-TEST_P(ShellTerms, AreMinusTheDerivativeOfTheirEnergy) {
-  test::disturb(state, int(nodes), 4e-5, 0.05);
-  compute();
-  const double h = 1e-8;
-  double largest = 0, error = 0;
-  for (size_t n = 0; n < nodes; ++n) {
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector3d x = get(state.x, n), d = get(state.d, n), step = h * Eigen::Vector3d::Unit(k);
-      put(state.x, n, x + step);
-      const double up = energy();
-      put(state.x, n, x - step);
-      const double down = energy();
-      put(state.x, n, x);
-      error = std::max(error, std::abs(get(forces[0].force, n)[k] + (up - down) / (2 * h)));
-      largest = std::max(largest, std::abs(get(forces[0].force, n)[k]));
-      put(state.d, n, d + 1e3 * step);
-      const double up_d = energy();
-      put(state.d, n, d - 1e3 * step);
-      const double down_d = energy();
-      put(state.d, n, d);
-      EXPECT_NEAR(get(forces[0].moment, n)[k], -(up_d - down_d) / (2e3 * h),
-                  3e-5 * get(forces[0].moment, n).norm() + 1e-9);
-    }
-  }
-  EXPECT_GT(largest, 1.0);
-  EXPECT_LE(error, 1e-4 * largest);  // kinks of the tables within the difference step
-}
-
-TEST_P(ShellTerms, HaveNoResultingForceAndMoment) {
-  test::disturb(state, int(nodes), 4e-5, 0.05);
-  compute();
-  Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
-  double size = 0;
-  for (size_t n = 0; n < nodes; ++n) {
-    const Eigen::Vector3d f = get(forces[0].force, n);
-    force += f;
-    moment += get(state.x, n).cross(f) + get(state.d, n).cross(get(forces[0].moment, n));
-    size += f.norm();
-  }
-  EXPECT_GT(size, 1.0);
-  EXPECT_LE(force.norm(), 1e-12 * size);
-  EXPECT_LE(moment.norm(), 1e-12 * size);
-}
-
-TEST_P(ShellTerms, TurnWithTheScene) {
-  test::disturb(state, int(nodes), 4e-5, 0.05);
-  compute();
-  std::vector<Eigen::Vector3d> before;
-  for (size_t n = 0; n < nodes; ++n) before.push_back(get(forces[0].force, n));
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-  test::rotate(state, int(nodes), turn);
-  compute();
-  for (size_t n = 0; n < nodes; ++n) EXPECT_LE((get(forces[0].force, n) - turn * before[n]).norm(), 1e-7);
+TEST_P(ShellTerms, PassTheTermKit) {
+  test::TermSubject subject{.model = &*model, .state = state};
+  test::disturb(subject.state, int(nodes), 4e-5, 0.05);
+  subject.energy = [this](const State& at) {
+    const ShellEnergy e = model->shell().stored_energy(at);
+    return e.fabric + e.hourglass;
+  };
+  subject.internal = subject.turns_with_scene = true;
+  subject.rest = state;
+  test::check_term(subject);
 }
 
 // Constant membrane strain and constant curvature fields must leave inner nodes free of force and moment.
@@ -133,31 +77,15 @@ TEST_P(ShellTerms, PassThePatchTest) {
   EXPECT_LE(inner, 1e-8);
 }
 
-// With a linear law the estimate must be close to the truth from below. (The fabric's estimate is for its
-// stiffest strain.)
-TEST_P(ShellTerms, StayBoundedBelowTheStableStepAndGrowAboveIt) {
-  for (const double factor : {0.98, 1.3}) {
-    Scene free = scene;
-    free.fabric = test::linear_fabric(1e9, 1e6, 2e5);
-    free.options.step_safety = factor;
-    const Model run(free);
-    State s = run.flat_state(0);
-    test::disturb(s, int(nodes), 1e-9, 0);
-    Workspace work(run);
-    for (int k = 0; k < 20000; ++k) {
-      compute_forces(run, s, work);
-      kick_nodes(run, s, work);
-      drift_nodes(run, s);
-    }
-    double speed = 0;
-    for (size_t n = 0; n < nodes; ++n) speed += std::abs(s.v.x[n]);  // a sum, since max() would lose NaN
-    const double bounded = 1e-9 / run.dt() * 100 * double(nodes);
-    if (factor < 1) {
-      EXPECT_LE(speed, bounded);
-    } else {
-      EXPECT_FALSE(speed <= bounded);
-    }
-  }
+// With a linear law: the fabric's estimate is for its stiffest strain.
+TEST_P(ShellTerms, StayBoundedBelowTheStableStepAndGrowAboveTheTrueLimit) {
+  Scene free = scene;
+  free.fabric = test::linear_fabric(1e9, 1e6, 2e5);
+  test::expect_stable_step(free, [](const Model& run) {
+    State flat = run.flat_state(0);
+    test::disturb(flat, run.node_count(), 1e-9, 0);
+    return flat;
+  });
 }
 
 TEST(Shell, StretchesAlongAFibreWithTheTablesStress) {

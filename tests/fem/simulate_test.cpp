@@ -131,8 +131,8 @@ TEST(Simulate, ConservesMomentumInFreeFlight) {
     drift_nodes(model, state);
   }
   const auto [linear_end, angular_end] = momenta();
-  EXPECT_LE((linear_end - linear).norm(), 1e-12 * linear.norm());
-  EXPECT_LE((angular_end - angular).norm(), 1e-9 * angular.norm());
+  EXPECT_LE((linear_end - linear).norm(), 1e-13 * linear.norm());
+  EXPECT_LE((angular_end - angular).norm(), 1e-13 * angular.norm());
 }
 
 // Booked elastic work against stored energy: a second check of the books, of second order in the step.
