@@ -3,19 +3,30 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "fem/term.hpp"
 #include "mapping/mold.hpp"
 
 namespace drapeplan {
 
-/// Node-to-mold contact by a stiff normal spring; with a coefficient also anchored Coulomb friction: a node
-/// that touches drops an anchor and is held by an equally stiff tangential spring; the anchor is dragged
-/// where the force would exceed coefficient times normal force. Exact stick, no creep; path dependent.
-/// @param stiffness  per node [N/m];  @param surface  distance of the touching face from the nodes [m] (half
-/// the ply).
-std::unique_ptr<Term> make_contact(const Mold& mold, std::optional<double> friction,
-                                   std::vector<double> stiffness, double surface);
+/// Of each node, the same along the mold's normal and in its tangent plane.
+struct ContactSprings {
+  std::vector<double> stiffness;  ///< [N/m]
+  std::vector<double> damping;    ///< [N s/m]
+  std::vector<double> row;        ///< what both together count in the bound of the step [N/m]
+};
+
+/// Node-to-mold contact: springs with dashpots. The gap is the distance to the tangent plane at the foot of
+/// the perpendicular (one step of Newton's method, 1e-11 m and 1e-6 rad on the seed's mold); the force acts
+/// along the normal there, and presses only: max(0, -stiffness gap - damping v_n). With a coefficient also
+/// anchored Coulomb friction: a node is held by an equal spring and dashpot at its anchor; where they would
+/// exceed coefficient times normal force, the anchor is dragged. A node that touches anew drops its anchor
+/// where its path crossed the surface, so that friction acts at once: it sticks if it came in steeper than
+/// the friction angle. Exact stick, no creep; path dependent.
+/// @param surface  distance of the touching face from the nodes [m] (half the ply).
+std::unique_ptr<Term> make_contact(const Mold& mold, std::optional<double> friction, ContactSprings springs,
+                                   double surface);
 
 /// Weight of the unscaled mass. @param mass  per node [kg];  @param acceleration  downwards [m/s^2].
 std::unique_ptr<Term> make_gravity(const std::vector<double>& mass, double acceleration);

@@ -69,6 +69,29 @@ GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>
   }
 }
 
+// Twice the kinetic energy of the nodes of a pad at speed V and spin W is at most m V^2 + 2 e V W + j W^2
+// with their mass m, their first moment e and their spread j about the centre; that of the pad is M V^2 + I
+// W^2. The largest eigenvalue of the first form on the second is the inverse of the ratio.
+std::vector<double> GripperRig::mass_ratios(const std::vector<double>& mass,
+                                            const std::vector<double>& inertia) const {
+  std::vector<double> ratios;
+  for (const Pad& pad : pads_) {
+    double sum = 0, spread = 0;
+    Vector3d moment = Vector3d::Zero();
+    for (auto k = size_t(pad.first); k < size_t(pad.last); ++k) {
+      const auto n = size_t(tied_[k]);
+      sum += mass[n];
+      moment += mass[n] * nodes_[k].offset;
+      spread += mass[n] * nodes_[k].offset.squaredNorm() + inertia[n];
+    }
+    const double a = sum / pad.mass, c = spread / pad.inertia;
+    const double b = moment.norm() / std::sqrt(pad.mass * pad.inertia);
+    const double largest = 0.5 * (a + c) + std::hypot(0.5 * (a - c), b);
+    ratios.insert(ratios.end(), size_t(pad.last - pad.first), std::max(1.0, 1 / largest));
+  }
+  return ratios;
+}
+
 RigScratch GripperRig::scratch() const {
   RigScratch s;
   for (auto* list : {&s.force, &s.moment, &s.mean_v, &s.mean_w}) list->resize(tied_.size());

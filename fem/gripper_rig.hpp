@@ -53,6 +53,12 @@ class GripperRig {
   /// @throws std::invalid_argument if a schedule is not one for this rig in its flat start.
   void check(const Schedule& schedule) const;
 
+  /// How many times heavier than its tied nodes a pad is, in the motion in which it is least so (>= 1); for
+  /// each node of tied(). A stiffness bound of nodes on their own masses holds on pads with masses that much
+  /// larger.
+  [[nodiscard]] std::vector<double> mass_ratios(const std::vector<double>& mass,
+                                                const std::vector<double>& inertia) const;
+
   /// Puts pads into the state, the ply lying flat at height z [m].
   void place(State& state, double z) const;
 

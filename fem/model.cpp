@@ -16,6 +16,18 @@ namespace {
 /// Largest angle per step of a pad on its actuator: its critical damping, explicit, is stable up to it.
 constexpr double kServoStep = 0.5;
 
+/// Share of a pad's surplus mass (over that of its nodes) in the stable step that its contact springs may
+/// use. The springs are some 30 times stiffer than those of free nodes then, and never govern the step.
+constexpr double kPadShare = 0.2;
+
+/// Largest frequency with contact over that without it. Played with the velocity of half a step before, a
+/// dashpot c counts like a spring 2 c / dt. With s = 2 / dt, spring a K of a node's row K and share z of its
+/// critical damping, s^2 = K / m (1 + a) + 2 z sqrt(a K / m) s; the larger root, over sqrt(K / m).
+double contact_rise(const FemOptions& options) {
+  const double damped = options.contact_damping * std::sqrt(options.contact_stiffness);
+  return damped + std::sqrt(damped * damped + 1 + options.contact_stiffness);
+}
+
 }  // namespace
 
 Model::Model(Scene scene) : scene_(std::move(scene)) {
@@ -23,6 +35,9 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   const auto n = size_t(mesh.node_count());
   const FemOptions& options = scene_.options;
   if (scene_.friction && !scene_.mold) throw std::invalid_argument("friction needs a mold");
+  if (scene_.start == Start::on_mold && (!scene_.mold || scene_.rig)) {
+    throw std::invalid_argument("a ply that starts on the mold needs a mold, and no rig");
+  }
   const std::vector<double> area = nodal_areas(mesh);
   std::vector<double> unscaled(n);
   for (size_t k = 0; k < n; ++k) unscaled[k] = scene_.fabric.areal_density * area[k];
@@ -41,25 +56,18 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
     terms_.push_back(make_loads(*scene_.loads, area));
     terms_.back()->add_stiffness(stiffness);
   }
-  if (scene_.mold) {
-    std::vector<double> contact(stiffness.translation);
-    for (double& k : contact) k *= options.contact_stiffness;
-    terms_.push_back(
-        make_contact(*scene_.mold, scene_.friction, std::move(contact), scene_.fabric.thickness / 2));
-    terms_.back()->add_stiffness(stiffness);
-  }
 
   mass_.assign(padded(int(n)), 0.0);
   inertia_ = inverse_mass_ = inverse_inertia_ = mass_;
   own_mass_.resize(n);
   // Mass per stiffness below which the target step would be missed.
-  const double needed = std::pow(options.target_step / (2 * options.step_safety), 2);
+  const double rise = scene_.mold ? contact_rise(options) : 1;
+  const double needed = std::pow(rise * options.target_step / (2 * options.step_safety), 2);
   for (size_t k = 0; k < n; ++k) {
     own_mass_[k] = std::max(options.mass_scaling * unscaled[k], needed * stiffness.translation[k]);
     mass_[k] = own_mass_[k];
     inertia_[k] = gyration2_[k] * mass_[k];
   }
-  stable_dt_ = stable_dt(stiffness);
   const double scale = std::accumulate(own_mass_.begin(), own_mass_.end(), 0.0) /
                        std::accumulate(unscaled.begin(), unscaled.end(), 0.0);
   alpha_ = scene_.damping.value_or(0) / std::sqrt(scale);
@@ -87,6 +95,10 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
         throw std::invalid_argument("a node under a pad is clamped, pinned or gripped");
     }
     held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
+  }
+  if (scene_.mold) add_contact(stiffness);
+  stable_dt_ = stable_dt(stiffness);
+  if (rig_) {
     // The joint's mobility: of the pad's mass, and of its inertia through the arm.
     const double arm = scene_.rig->joint_offset / scene_.rig->pad_radius;
     const double mobility = (1 + 2 * arm * arm) / scene_.rig->pad_mass;
@@ -101,6 +113,32 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
     inverse_mass_[k] = mass_[k] > 0 ? 1 / mass_[k] : 0;
     inverse_inertia_[k] = inertia_[k] > 0 ? 1 / inertia_[k] : 0;
   }
+}
+
+// Rows of a spring k with a dashpot c are k + c s_1, with s_1 = 2 / dt_1 of the stable step dt_1: see
+// contact_rise. A longer step than dt_1 only makes them safer, a shorter one needs them less.
+void Model::add_contact(NodalStiffness& stiffness) {
+  const FemOptions& options = scene_.options;
+  const size_t n = own_mass_.size();
+  const double highest = contact_rise(options) * 2 / stable_dt(stiffness);
+  ContactSprings springs{stiffness.translation, std::vector<double>(n), std::vector<double>(n)};
+  for (double& k : springs.stiffness) k *= options.contact_stiffness;
+  if (rig_) {
+    const std::vector<double> ratios = rig_->mass_ratios(mass_, inertia_);
+    for (size_t i = 0; i < ratios.size(); ++i) {
+      const auto k = size_t(rig_->tied()[i]);
+      const double surplus = (ratios[i] - 1) * own_mass_[k];
+      springs.stiffness[k] = std::max(springs.stiffness[k], kPadShare * surplus * highest * highest);
+      own_mass_[k] += surplus;
+    }
+  }
+  for (size_t k = 0; k < n; ++k) {
+    springs.damping[k] = 2 * options.contact_damping * std::sqrt(springs.stiffness[k] * own_mass_[k]);
+    springs.row[k] = springs.stiffness[k] + springs.damping[k] * highest;
+  }
+  terms_.push_back(
+      make_contact(*scene_.mold, scene_.friction, std::move(springs), 0.5 * scene_.fabric.thickness));
+  terms_.back()->add_stiffness(stiffness);
 }
 
 double Model::stable_dt(const NodalStiffness& stiffness) const {
@@ -132,7 +170,7 @@ std::uint64_t Model::fingerprint() const {
   const FemOptions& o = scene_.options;
   add(std::array{stable_dt_, alpha_, o.time_scaling, o.step_safety, double(o.section_points),
                  double(o.step_interval), o.hourglass, o.bulk_viscosity, o.contact_stiffness,
-                 scene_.gravity.value_or(0), scene_.friction.value_or(-1), scene_.position.x(),
+                 o.contact_damping, scene_.gravity.value_or(0), scene_.friction.value_or(-1), scene_.position.x(),
                  scene_.position.y(), scene_.angle});
   if (scene_.loads) {
     for (const auto* list : {&scene_.loads->forces, &scene_.loads->moments}) {
@@ -180,13 +218,20 @@ State Model::flat_state(double height) const {
   state.history.assign(shell_->history_count(), 0.0);
   state.dt = state.dt_before = dt();
   state.stable_dt = stable_dt_;
+  const Eigen::Vector2d& place = scene_.position;
+  Eigen::Vector3d origin(place.x(), place.y(), height), normal = Eigen::Vector3d::UnitZ();
+  Eigen::Quaterniond lean = Eigen::Quaterniond::Identity();
+  if (scene_.start == Start::on_mold) {
+    normal = scene_.mold->normal(place.x(), place.y());
+    origin = scene_.mold->point(place.x(), place.y()) + 0.5 * scene_.fabric.thickness * normal;
+    lean.setFromTwoVectors(Eigen::Vector3d::UnitZ(), normal);
+  }
   const Eigen::Rotation2Dd turn(scene_.angle);
   for (size_t k = 0; k < padded(n); ++k) {  // padding repeats the last node and has no mass
-    const Eigen::Vector2d xy = scene_.position + turn * scene_.mesh.rest[std::min(k, size_t(n) - 1)];
-    state.x.x[k] = xy.x();
-    state.x.y[k] = xy.y();
-    state.x.z[k] = height;
-    state.d.z[k] = 1;
+    const Eigen::Vector2d uv = turn * scene_.mesh.rest[std::min(k, size_t(n) - 1)];
+    const Eigen::Vector3d x = origin + lean * Eigen::Vector3d(uv.x(), uv.y(), 0);
+    state.x.x[k] = x.x(), state.x.y[k] = x.y(), state.x.z[k] = x.z();
+    state.d.x[k] = normal.x(), state.d.y[k] = normal.y(), state.d.z[k] = normal.z();
   }
   if (rig_) rig_->place(state, height);
   return state;

@@ -13,6 +13,7 @@
 #include "fem/mesh.hpp"
 #include "fem/options.hpp"
 #include "fem/shell.hpp"
+#include "fem/start.hpp"
 #include "fem/term.hpp"
 #include "mapping/mold.hpp"
 
@@ -26,6 +27,7 @@ struct Scene {
   Eigen::Vector2d position{0, 0};  ///< x-y of the ply frame's origin in the flat start [m]
   double angle = 0;                ///< warp direction from +x in the flat start [rad]
   double start_height = 0;         ///< of the flat ply without a rig; with a rig the schedule says it [m]
+  Start start = Start::level;      ///< `on_mold` needs a mold and no rig
   std::optional<double> gravity;   ///< [m/s^2]
   std::optional<double> damping;   ///< mass-proportional rate alpha of the unscaled ply [1/s]
   std::optional<Mold> mold;
@@ -76,16 +78,19 @@ class Model {
   /// Hash of all that a run depends on: a saved state fits a model with the same one.
   [[nodiscard]] std::uint64_t fingerprint() const;
 
-  /// The flat ply at rest at `height` [m].
+  /// The flat ply at rest, level at `height` [m] or on the mold, as the scene says.
   [[nodiscard]] State flat_state(double height) const;
 
  private:
+  void add_contact(NodalStiffness& stiffness);
+
   Scene scene_;
   std::vector<std::unique_ptr<Term>> terms_;
   const Shell* shell_ = nullptr;
   std::optional<GripperRig> rig_;
   std::vector<double> mass_, inertia_, inverse_mass_, inverse_inertia_;
-  std::vector<double> own_mass_, gyration2_;  ///< of all nodes, held ones too [kg], [m^2]
+  std::vector<double> own_mass_, gyration2_;  ///< of all nodes, held ones too [kg], [m^2]; a tied node's mass
+                                              ///< is its share of its pad
   double stable_dt_ = 0, alpha_ = 0;
 };
 

@@ -52,7 +52,28 @@ bool Monitor::look(State& state, RunReport& report) {
   }
   if (!(std::max(record.fibre_strain, record.fibre_compression) <= kTornStrain))
     return fail(state, "a fibre is torn or the step is unstable", report);
+  if (model_.scene().mold) note_penetration(state);
   return true;
+}
+
+// The distance to the tangent plane at the vertical foot (5e-8 m on the seed's mold) tells who is worth
+// asking.
+void Monitor::note_penetration(State& state) const {
+  const Mold& mold = *model_.scene().mold;
+  const double surface = 0.5 * model_.scene().fabric.thickness;
+  constexpr int kChunk = 64;
+  double z[kChunk], zx[kChunk], zy[kChunk];
+  for (int first = 0; first < model_.node_count(); first += kChunk) {
+    const int chunk = std::min(kChunk, model_.node_count() - first);
+    mold.heights(chunk, &state.x.x[size_t(first)], &state.x.y[size_t(first)], z, zx, zy);
+    for (int k = 0; k < chunk; ++k) {
+      const auto n = size_t(first + k);
+      const double above = (state.x.z[n] - z[k]) / std::sqrt(1 + zx[k] * zx[k] + zy[k] * zy[k]);
+      if (!(surface - above > state.record.penetration)) continue;  // not defined here, or no worse
+      const double distance = mold.closest({state.x.x[n], state.x.y[n], state.x.z[n]}).signed_distance;
+      state.record.penetration = std::max(state.record.penetration, surface - distance);
+    }
+  }
 }
 
 bool Monitor::fail(const State& state, const std::string& what, RunReport& report) {
@@ -80,12 +101,6 @@ void Monitor::close(State& state, RunReport& report) const {
   report.largest_kinetic_ratio = state.record.kinetic_ratio;
   report.largest_hourglass_share = state.record.hourglass_share;
   report.largest_link_error = state.record.link_error;
-  if (!model_.scene().mold) return;
-  for (size_t n = 0; n < size_t(model_.node_count()); ++n) {
-    const ClosestPoint foot = model_.scene().mold->closest({state.x.x[n], state.x.y[n], state.x.z[n]});
-    const double gap = foot.signed_distance - 0.5 * model_.scene().fabric.thickness;
-    state.record.penetration = std::max(state.record.penetration, -gap);
-  }
   report.largest_penetration = state.record.penetration;
 }
 

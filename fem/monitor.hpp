@@ -22,6 +22,7 @@ class Monitor {
   void close(State& state, RunReport& report) const;
 
  private:
+  void note_penetration(State& state) const;
   static bool fail(const State& state, const std::string& what, RunReport& report);
 
   const Model& model_;

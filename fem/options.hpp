@@ -20,8 +20,8 @@ struct FemOptions {
   /// from 0.4 of the stable one on. With a ratio of 0.1 and up to 0.95 of the stable step (which the ratio
   /// lowers to 0.905) none is left, whatever the two stiffnesses (scanned: fem/README.md).
   double bulk_viscosity = 0.1;
-  double contact_stiffness =
-      0.1;  ///< normal and tangential contact stiffness over the node's membrane stiffness
+  double contact_stiffness = 0.05; ///< of a free node, over its membrane stiffness
+  double contact_damping = 0.2;    ///< share of the critical damping of a node on its contact spring
 };
 
 /// Stable step with a damping ratio at the highest frequency, velocities half a step late, over that without.

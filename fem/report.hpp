@@ -13,7 +13,7 @@ struct Energies {
   double internal = 0;       ///< work done on the fabric, its hourglass part included
   double external = 0;       ///< work of gravity, loads, actuators and grips
   double friction = 0;       ///< taken by friction, its elastic part included
-  double contact = 0;        ///< stored by normal contact
+  double contact = 0;        ///< stored by normal contact and taken by its dashpots
   double damping = 0;        ///< taken by mass damping
   double constraint = 0;     ///< taken by interlinks, guides, tilt stops and the release of pads
   double hourglass = 0;      ///< stored in hourglass modes; part of `internal`
@@ -35,7 +35,7 @@ struct RunReport {
   double largest_kinetic_ratio = 0;    ///< kinetic energy of the ply's free nodes over internal energy at the
                                        ///< end of each tenth, from the second on
   double largest_hourglass_share = 0;  ///< stored hourglass energy over internal energy, at the same instants
-  double largest_penetration = 0;      ///< of the ply's underside below the mold, at the end [m]
+  double largest_penetration = 0;      ///< of the ply's underside below the mold over the run [m]
   double largest_link_error =
       0;  ///< error of an interlink's length or of the fixed joint's place over the run [m]
   std::uint64_t state_hash = 0;

@@ -9,6 +9,7 @@
 #include "fem/fabric.hpp"
 #include "fem/options.hpp"
 #include "fem/rig.hpp"
+#include "fem/start.hpp"
 #include "mapping/mold.hpp"
 #include "mapping/net.hpp"
 #include "planner/score.hpp"
@@ -90,7 +91,8 @@ struct Case {
   Ply ply;
   Fabric material;  ///< thickness 0: no `material` section, nothing can be simulated
   MaterialNotes material_notes;
-  double start_height = 0;  ///< height of the flat ply without grippers [m]
+  Start start = Start::level;  ///< of a ply without grippers
+  double start_height = 0;     ///< height of the level ply without grippers [m]
   std::optional<Mold> mold;
   std::optional<double> friction;  ///< Coulomb coefficient between ply and mold
   std::optional<MappingOptions> mapping;

@@ -215,6 +215,10 @@ void check_case(const CaseFields& fields, CaseReader& reader) {
     reader.fail("/optimise", "longest_sequence is shorter than shortest_stroke");
   }
   if (!reader.good("/ply")) return;
+  if (c.start == Start::on_mold && reader.good("/ply/start") && (!fields.mold || c.grippers)) {
+    reader.fail("/ply/start",
+                "needs a mold and no grippers; with grippers the schedule says where the ply starts");
+  }
   check_mapping(fields, reader);
   check_on_ply(reader, "/schedule/wave/start", c.ply, c.schedule.wave_start);
   if (reader.good("/fem")) check_cells(reader, "/fem/mesh_size", c.ply, fields.fem.mesh_size);

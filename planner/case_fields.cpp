@@ -44,6 +44,7 @@ void optional_section(FieldVisitor& visitor, const Section& section, std::option
 
 void visit_ply(FieldVisitor& v, CaseFields& fields) {
   Ply& ply = fields.value.ply;
+  Start& start = fields.value.start;
   v.field({"width", &fields.width, "Size along the warp (u); the origin of (u, v) is in the middle",
            Dimension::length, positive(kLargestLength), false, "needed without `outline`"});
   v.field({"height", &fields.height, "Size along the weft (v)", Dimension::length, positive(kLargestLength),
@@ -56,6 +57,9 @@ void visit_ply(FieldVisitor& v, CaseFields& fields) {
   v.field(
       {"position", &ply.position, "Place (x, y) of the origin of (u, v) before draping", Dimension::length});
   v.field({"angle", &ply.angle, "Warp direction, from +x towards +y", Dimension::angle});
+  v.field({"start", choice(start, {"level", "on_mold"}),
+           "Without grippers: `level` at start_height, or laid `on_mold`, flat in its tangent plane at "
+           "`position`"});
 }
 
 void visit_grip(FieldVisitor& v, GripOptions& grip) {
@@ -331,7 +335,9 @@ void visit_fem(FieldVisitor& v, FemOptions& f) {
   v.field({"hourglass", &f.hourglass, "Hourglass stiffness over the physical one of a fibre in compression",
            Dimension::none, from(0, 100)});
   v.field({"contact_stiffness", &f.contact_stiffness,
-           "Contact stiffness over the membrane stiffness of a node", Dimension::none, positive(100)});
+           "Contact stiffness of a free node over its membrane stiffness", Dimension::none, positive(100)});
+  v.field({"contact_damping", &f.contact_damping,
+           "Share of the critical damping of a node on its contact spring", Dimension::none, from(0, 1)});
 }
 
 void visit_damping(FieldVisitor& v, DampingFields& d) {
@@ -426,7 +432,7 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
   v.list(references);
   v.field({"start_height",
            &c.start_height,
-           "Height of the flat ply without grippers",
+           "Height of the level ply without grippers",
            Dimension::length,
            from(-kLargestLength, kLargestLength),
            false,

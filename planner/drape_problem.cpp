@@ -76,6 +76,7 @@ Scene scene_of(const Case& value, const FemOptions& options) {
   scene.position = ply.position;
   scene.angle = ply.angle;
   scene.start_height = value.start_height;
+  scene.start = value.start;
   scene.gravity = value.gravity;
   scene.damping = value.damping;
   scene.rest = value.rest;
@@ -142,7 +143,7 @@ Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, i
   }
   // A gap is never negative: a ply that ended inside the mold would look perfectly draped.
   if (drape.run.report.largest_penetration > case_.material.thickness) {
-    drape.score = failed_score("the ply ended " + std::to_string(1e3 * drape.run.report.largest_penetration) +
+    drape.score = failed_score("the ply came " + std::to_string(1e3 * drape.run.report.largest_penetration) +
                                " mm inside the mold: more than its thickness");
     return drape;
   }

@@ -51,6 +51,28 @@ within "$work/stdout" /probes/tip/displacement/1 -1e-6 1e-6              # stays
 within "$work/stdout" /energy/kinetic 0 1e-9                             # J; 0.4 mJ of work were done: at rest
 within "$work/stdout" /energy/balance_error 0 1e-6
 
+# Coulomb friction on an incline, mu = 0.7, atan(0.7) = 34.99 deg: sticks below without creep, slides above by
+# g (sin - mu cos) t^2 / 2 = 20.9064 mm in 0.2 s at 40 deg, of which 16.0152 mm along x.
+incline=$source/cases/incline.json
+for angle in 30 34.9; do
+  for duration in 0.1 0.3; do
+    expect 0 simulate "$incline" --json --set "mold.angle=$angle deg" --set "duration=$duration s"
+    for axis in 0 2; do
+      within "$work/stdout" /probes/tip/displacement/$axis -1e-8 1e-8
+      value "$work/stdout" /probes/tip/displacement/$axis >"$work/at_$duration.$axis"
+    done
+  done
+  for axis in 0 2; do
+    checks=$((checks + 1))
+    paste "$work/at_0.1.$axis" "$work/at_0.3.$axis" | awk '{d = $1 - $2; exit !(NF == 2 && d <= 1e-9 && d >= -1e-9)}' ||
+      fail "incline: creeps at $angle deg: $(cat "$work/at_0.1.$axis" "$work/at_0.3.$axis")"
+  done
+done
+expect 0 simulate "$incline" --json --set 'mold.angle=40 deg' --set 'duration=0.2 s'
+within "$work/stdout" /probes/tip/displacement/0 0.0159992 0.0160312   # 0.1 %
+within "$work/stdout" /probes/tip/displacement/1 -1e-9 1e-9
+within "$work/stdout" /energy/friction 5.47e-5 5.58e-5                 # J: mu m g cos 40 deg times the path
+
 refuse '/fidelities: there is no fidelity "finest"' simulate "$quick" --fidelity finest
 refuse "$work/none.json" simulate "$quick" --schedule "$work/none.json"
 refuse '/ply/widht: unknown key' simulate "$quick" --set 'ply.widht=1 mm'
@@ -66,4 +88,4 @@ refuse "$work/empty.json" simulate "$quick" --schedule "$work/empty.json"
 touch "$work/file"
 expect 3 simulate "$quick" --fidelity screen --quiet --out "$work/file/below"
 grep -qF "$work/file/below" "$work/stderr" || fail "no path: $(cat "$work/stderr")"
-finish 45
+finish 60
