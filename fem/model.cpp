@@ -47,7 +47,8 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   terms_.push_back(std::move(shell));
   NodalStiffness stiffness(mesh.node_count());
   terms_.front()->add_stiffness(stiffness);
-  // Directors weigh as much as their stiffness demands (see shell_bounds.hpp), so that they never govern the step.
+  // Directors weigh as much as their stiffness demands (see shell_bounds.hpp), so that they never govern the
+  // step.
   gyration2_.resize(n);
   for (size_t k = 0; k < n; ++k) gyration2_[k] = stiffness.rotation[k] / stiffness.translation[k];
   if (scene_.gravity) terms_.push_back(make_gravity(unscaled, *scene_.gravity));
