@@ -156,7 +156,7 @@ struct Incline {
 TEST(Friction, HoldsASheetBelowItsAngleWithoutCreepHoweverItWasPutDown) {
   for (const double sunk : {0.0, 0.5, 1.0, 1.5, 2.0}) {
     Incline incline(std::atan(0.5) - 0.02, 0.5, sunk);
-    EXPECT_LE(incline.slide(0.01), 2e-7) << sunk;  // settles: its elastic slip and some
+    EXPECT_LE(incline.slide(0.01), 5e-7) << sunk;  // settles: its elastic slip and some
     EXPECT_LE(incline.slide(0.1), 1e-12) << sunk;
     EXPECT_LE(kinetic_energy(*incline.model, incline.state), 1e-24) << sunk;
   }
