@@ -87,6 +87,8 @@ std::optional<std::array<size_t, 2>> crossing_edges(const Polygon& polygon) {
   const auto corner = [&polygon, n](size_t k) -> const Vector2d& { return polygon[k % n]; };
   for (size_t i = 0; i < n; ++i) {
     if (corner(i) == corner(i + 1)) return std::array{i, i};
+  }
+  for (size_t i = 0; i < n; ++i) {
     const Vector2d here = corner(i + 1) - corner(i), next = corner(i + 2) - corner(i + 1);
     if (cross(here, next) == 0 && here.dot(next) < 0) return std::array{i, (i + 1) % n};  // folds back
     for (size_t j = i + 2; j < n; ++j) {

@@ -63,6 +63,7 @@ double patch_error(const Mesh& mesh) {
   Scene scene;
   scene.mesh = mesh;
   scene.fabric = fabric;
+  scene.options.bulk_viscosity = 0;  // a state that is put there is no motion
   const Model model(scene);
   State state = model.flat_state(0);
   Eigen::Matrix<double, 3, 2> gradient;
