@@ -170,8 +170,8 @@ std::uint64_t Model::fingerprint() const {
   const FemOptions& o = scene_.options;
   add(std::array{stable_dt_, alpha_, o.time_scaling, o.step_safety, double(o.section_points),
                  double(o.step_interval), o.hourglass, o.bulk_viscosity, o.contact_stiffness,
-                 o.contact_damping, scene_.gravity.value_or(0), scene_.friction.value_or(-1), scene_.position.x(),
-                 scene_.position.y(), scene_.angle});
+                 o.contact_damping, scene_.gravity.value_or(0), scene_.friction.value_or(-1),
+                 scene_.position.x(), scene_.position.y(), scene_.angle});
   if (scene_.loads) {
     for (const auto* list : {&scene_.loads->forces, &scene_.loads->moments}) {
       for (const NodalLoad& load : *list) hash.add(double(load.node)), add(load.value);

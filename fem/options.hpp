@@ -14,14 +14,14 @@ struct FemOptions {
   double step_safety = 0.9;  ///< share of the estimated stable step
   int step_interval = 32;    ///< steps between two choices of the step; 0: one step, safe for all strains
   bool rates = true;         ///< false: slowest curves only, whatever tables the material has
-  double hourglass = 1;      ///< hourglass stiffness over the physical one of a fibre in compression
+  double hourglass = 0.1;    ///< hourglass stiffness over that of a bilinear element of fibre in compression
   /// Damping ratio along the fibres at the highest frequency. A fibre that is stiffer in tension than in
-  /// compression is a spring with two stiffnesses, which central differences feed in narrow windows of the step
-  /// from 0.4 of the stable one on. With a ratio of 0.1 and up to 0.95 of the stable step (which the ratio
-  /// lowers to 0.905) none is left, whatever the two stiffnesses (scanned: fem/README.md).
+  /// compression is a spring with two stiffnesses, which central differences feed in narrow windows of the
+  /// step from 0.4 of the stable one on. With a ratio of 0.1 and up to 0.95 of the stable step (which the
+  /// ratio lowers to 0.905) none is left, whatever the two stiffnesses (scanned: fem/README.md).
   double bulk_viscosity = 0.1;
-  double contact_stiffness = 0.05; ///< of a free node, over its membrane stiffness
-  double contact_damping = 0.2;    ///< share of the critical damping of a node on its contact spring
+  double contact_stiffness = 0.05;  ///< of a free node, over its membrane stiffness
+  double contact_damping = 0.2;     ///< share of the critical damping of a node on its contact spring
 };
 
 /// Stable step with a damping ratio at the highest frequency, velocities half a step late, over that without.

@@ -23,6 +23,7 @@ RateLookup::RateLookup(const std::function<double(double, double)>& f, double lo
     const double rate = floor * std::expm1(row / per_rate_step_);
     const Lookup curve([&](double strain) { return f(strain, rate); }, lower, upper, intervals);
     line_.insert(line_.end(), curve.lines().begin(), curve.lines().end());
+    steepest_.insert(steepest_.end(), curve.steepest().begin(), curve.steepest().end());
     lower_ = curve.lower();
     per_step_ = curve.per_step();
   }

@@ -9,12 +9,35 @@
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 #include "fem/lanes.hpp"
 
 namespace drapeplan {
+
+/// Natural logarithm of normal numbers >= 1, to 2e-7: enough for a place in a table, and without a call per
+/// lane. x = 2^k m, log m = 2 (t + t^3/3 + ...) with t = (m - 1) / (m + 1) <= 1/3.
+inline Lanes log_lanes(const Lanes& x) {
+  alignas(std::experimental::memory_alignment_v<Lanes>) double in[size_t(kLanes)], power[size_t(kLanes)];
+  x.copy_to(in, std::experimental::vector_aligned);
+  for (size_t l = 0; l < size_t(kLanes); ++l) {
+    constexpr int kMantissaBits = 52;
+    constexpr std::int64_t kMantissa = (std::int64_t(1) << kMantissaBits) - 1, kBias = 1023;
+    const auto bits = std::bit_cast<std::int64_t>(in[l]);
+    power[l] = double((bits >> kMantissaBits) - kBias);
+    in[l] = std::bit_cast<double>((bits & kMantissa) | (kBias << kMantissaBits));
+  }
+  const Lanes m(in, std::experimental::vector_aligned), t = (m - Lanes(1.0)) / (m + Lanes(1.0)), t2 = t * t;
+  const Lanes series =
+      Lanes(1.0) +
+      t2 * (Lanes(1.0 / 3) +
+            t2 * (Lanes(1.0 / 5) + t2 * (Lanes(1.0 / 7) + t2 * (Lanes(1.0 / 9) + t2 * Lanes(1.0 / 11)))));
+  return Lanes(power, std::experimental::vector_aligned) * Lanes(std::numbers::ln2) + Lanes(2.0) * t * series;
+}
 
 /// A curve per rate, resampled on equal intervals of strain and of y = log(1 + rate / floor), bilinear
 /// between; constant beyond the slowest and the fastest curve, last slope beyond the last strain.
@@ -34,13 +57,16 @@ class RateLookup {
     gather(at, slow0, slow1, fast0, fast1);
     return slow0 + slow1 * strain + at.share * ((fast0 - slow0) + (fast1 - slow1) * strain);
   }
-  /// Slope in strain while the lagged strain stays: d/de of the above with d growth / d strain = `gain`.
+  /// Steepest slope near a strain (see Lookup) while the lagged strain stays: d/de of the above with
+  /// d growth / d strain = `gain`.
   [[nodiscard]] Lanes slope(const Lanes& strain, const Lanes& growth, const Lanes& gain) const {
     const Place at = place(strain, growth);
     Lanes slow0, slow1, fast0, fast1;
     gather(at, slow0, slow1, fast0, fast1);
     const Lanes by_rate = (fast0 - slow0) + (fast1 - slow1) * strain;  // per interval of y
-    return slow1 + at.share * (fast1 - slow1) +
+    const Lanes slow([&](auto l) { return steepest_[at.index[size_t(l)] / 2]; });
+    const Lanes fast([&](auto l) { return steepest_[at.index[size_t(l)] / 2 + pieces_]; });
+    return slow + at.share * (fast - slow) +
            std::experimental::abs(by_rate) * Lanes(per_rate_step_) * gain / (Lanes(1.0) + growth);
   }
   /// Largest of these slopes, over all strains of the table and all rates.
@@ -54,7 +80,7 @@ class RateLookup {
   [[nodiscard]] Place place(const Lanes& strain, const Lanes& growth) const {
     namespace stdx = std::experimental;
     const Lanes piece = stdx::clamp((strain - Lanes(lower_)) * Lanes(per_step_), Lanes(0.0), Lanes(last_));
-    const Lanes y = stdx::min(stdx::log(Lanes(1.0) + growth) * Lanes(per_rate_step_), Lanes(rows_));
+    const Lanes y = stdx::min(log_lanes(Lanes(1.0) + growth) * Lanes(per_rate_step_), Lanes(rows_));
     const Lanes row = stdx::min(stdx::floor(y), Lanes(rows_ - 1));
     Place at{y - row, {}};
     for (size_t l = 0; l < size_t(kLanes); ++l)
@@ -79,7 +105,8 @@ class RateLookup {
 
   double lower_ = 0, per_step_ = 1, last_ = 0, per_rate_step_ = 1, rows_ = 1;
   size_t pieces_ = 0;
-  std::vector<double> line_;  ///< by rate, by piece: intercept and slope
+  std::vector<double> line_;      ///< by rate, by piece: intercept and slope
+  std::vector<double> steepest_;  ///< by rate, by piece: slope near it
 };
 
 /// Both tables of a fabric.

@@ -21,7 +21,7 @@ struct Energies {
   double balance_error = 0;  ///< largest |balance| over the run / largest
 };
 
-enum class RunStatus { done, diverged };
+enum class RunStatus { done, diverged, paused };
 
 struct RunReport {
   RunStatus status = RunStatus::done;

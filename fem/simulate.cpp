@@ -143,9 +143,9 @@ RunResult simulate(const Model& model, const RunRequest& request) {
     report.message = "interlinks could not be kept at their length";
   }
   if (report.message.empty()) {
-    report.message = rests                ? "the ply is at rest"
-                     : clock.ended(state) ? "the time is over"
-                                          : "paused, to be continued";
+    const bool paused = !rests && !clock.ended(state);
+    report.message = rests ? "the ply is at rest" : paused ? "paused, to be continued" : "the time is over";
+    if (paused) report.status = RunStatus::paused;
   }
   report.steps = state.step;
   report.dt = state.time / double(std::max<std::int64_t>(state.step, 1));

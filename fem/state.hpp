@@ -12,7 +12,17 @@ namespace drapeplan {
 
 /// Books of work, one entry each. See Energies for their meaning.
 enum class Book {
-  internal, gravity, contact, friction, damping, actuator, interlink, stop, load, release, grip
+  internal,
+  gravity,
+  contact,
+  friction,
+  damping,
+  actuator,
+  interlink,
+  stop,
+  load,
+  release,
+  grip
 };
 inline constexpr size_t kBooks = 11;
 

@@ -4,8 +4,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "fem/monitor.hpp"
+#include "fem/stable_step.hpp"
+#include "fem/state_file.hpp"
 #include "planner/cli.hpp"
 #include "planner/drape_problem.hpp"
+#include "planner/quantity.hpp"
 #include "planner/result_fields.hpp"
 #include "planner/run_files.hpp"
 #include "planner/schedule_file.hpp"
@@ -23,20 +27,54 @@ struct SimulateOptions {
   std::string schedule = "uniform";
   std::string fidelity = "report";
   int frames = 21;
+  std::string restart, save;  ///< files of states
+  std::string pause;          ///< a time, e.g. "2 s"
 };
 
+/// The part of the run that was asked for; the state is kept here while it is used.
+struct PartOfRun {
+  std::optional<State> from;
+  double pause = 0;
+};
+
+/// Reads what --restart and --pause say. @throws std::invalid_argument with the reason.
+PartOfRun part_of_run(const SimulateOptions& options, const Model& model) {
+  PartOfRun part;
+  if (!options.pause.empty()) {
+    std::string fault;
+    const std::optional<double> time = parse_quantity(options.pause, Dimension::time, fault);
+    if (!time || !(*time > 0)) throw std::invalid_argument("--pause: " + (time ? "must be > 0" : fault));
+    if (options.save.empty()) throw std::invalid_argument("--pause: needs --save FILE, or the run is lost");
+    part.pause = *time;
+  }
+  if (options.restart.empty()) return part;
+  StateReading reading = load_state(options.restart, model);
+  if (!reading.value) throw std::invalid_argument("--restart: " + reading.error);
+  part.from = std::move(reading.value);
+  return part;
+}
+
+/// Saves the state where --save says, and adds the stable step at it: as estimated, and the true one.
+void finish_run(const SimulateOptions& options, const Model& model, const RunResult& run, json& result) {
+  if (!options.save.empty()) save_state(options.save, model, run.state);
+  if (run.report.status == RunStatus::diverged) return;
+  NodalStiffness scratch(model.node_count());
+  result["stable_step"] = {{"estimate", finite(stable_step(model, run.state, scratch))},
+                           {"true", finite(true_stable_step(model, run.state))}};
+}
+
 std::string summary(const RunReport& report, int nodes) {
-  char text[600];
+  char text[700];
   std::snprintf(
       text, sizeof text,
       "%s: %lld steps of %.3g us on %d nodes in %.1f s (%.1f million element updates per second)\n"
       "energy [J]: kinetic %.3g, internal %.4g, external %.4g, friction %.4g, damping %.4g, constraint %.3g, "
-      "hourglass %.3g; books close to %.1e of the largest\nstate hash %s\n",
+      "hourglass %.3g (at most %.2f %% of internal); books close to %.1e of the largest\nstate hash %s\n",
       report.message.c_str(), static_cast<long long>(report.steps), 1e6 * report.dt, nodes,
       report.wall_seconds, 1e-6 * report.element_updates_per_second, report.energy.kinetic,
       report.energy.internal, report.energy.external, report.energy.friction, report.energy.damping,
-      report.energy.constraint, report.energy.hourglass, report.energy.balance_error,
-      hex(report.state_hash).c_str());
+      report.energy.constraint, report.energy.hourglass, 1e2 * report.largest_hourglass_share,
+      report.energy.balance_error, hex(report.state_hash).c_str());
   return text;
 }
 
@@ -64,14 +102,20 @@ json probes_json(const Case& value, const Model& model, const Snapshot& start, c
 /// A case without grippers: strips and specimens.
 int simulate_free(const Case& value, const SimulateOptions& options) {
   const Model model(scene_of(value, value.fidelities.at(options.fidelity)));
+  const PartOfRun part = part_of_run(options, model);
   std::vector<Snapshot> frames;
-  const RunResult run = simulate(model, {.schedule = nullptr,
-                                         .duration = value.duration,
-                                         .frames = std::max(options.frames, 1),
-                                         .observe = [&](const Snapshot& frame) { frames.push_back(frame); }});
+  RunRequest request;
+  request.duration = value.duration;
+  request.from = part.from ? &*part.from : nullptr;
+  request.pause = part.pause;
+  request.frames = options.common.out.empty() ? 0 : options.frames;
+  request.observe = [&frames](const Snapshot& frame) { frames.push_back(frame); };
+  const RunResult run = simulate(model, request);
   json result = report_json(run.report);
+  finish_run(options, model, run, result);
   result["terms"] = model.term_names();
-  result["probes"] = probes_json(value, model, frames.front(), run.final);
+  const Snapshot start = take_snapshot(model, model.flat_state(value.start_height), RigDrive{});
+  result["probes"] = probes_json(value, model, start, run.final);
   std::string text = summary(run.report, model.node_count());
   for (const auto& [name, probe] : result["probes"].items()) {
     const auto u = probe["displacement"];
@@ -90,7 +134,7 @@ int simulate_free(const Case& value, const SimulateOptions& options) {
     write_frames(options.common.out, "ply", model.scene().mesh, frames, value.mold ? &*value.mold : nullptr,
                  value.material.thickness);
   }
-  return run.report.status == RunStatus::done ? code : kNotFinished;
+  return run.report.status != RunStatus::diverged ? code : kNotFinished;
 }
 
 /// The schedule by name or from a file; prints errors and returns nothing if the file is wrong.
@@ -136,9 +180,12 @@ int simulate_drape(Case value, const SimulateOptions& options) {
   const std::optional<Schedule> schedule = schedule_of(problem, options.schedule);
   if (!schedule) return kInputWrong;
   const bool files = !options.common.out.empty();
-  const Drape drape = problem.run(*schedule, options.fidelity, files ? options.frames : 0);
   const Model& model = problem.model(options.fidelity);
+  const PartOfRun part = part_of_run(options, model);
+  const Drape drape = problem.run(*schedule, options.fidelity, files ? options.frames : 0,
+                                  {part.from ? &*part.from : nullptr, part.pause});
   json result = report_json(drape.run.report);
+  finish_run(options, model, drape.run, result);
   result["score"] = score_json(drape.score);
   result["terms"] = model.term_names();
   const std::string text = summary(drape.run.report, model.node_count()) + score_line(drape);
@@ -155,7 +202,7 @@ int simulate_drape(Case value, const SimulateOptions& options) {
     write_schedule(folder / "schedule.json", *schedule, *resolved.grippers);
     write_schedule_csv(folder / "schedule.csv", *schedule, *resolved.grippers);
   }
-  return drape.score.valid ? code : kNotFinished;
+  return drape.score.valid || drape.run.report.status == RunStatus::paused ? code : kNotFinished;
 }
 
 int run_simulate(const SimulateOptions& options) {
@@ -203,6 +250,9 @@ void add_simulate(CLI::App& program, Action& action) {
   verb->add_option("--fidelity", options->fidelity, "fidelity of the case (default: report)");
   verb->add_option("--frames", options->frames, "instants written for ParaView (default: 21)")
       ->check(CLI::Range(1, 10000));
+  verb->add_option("--pause", options->pause, "stops there, e.g. \"2 s\" of the schedule; needs --save");
+  verb->add_option("--save", options->save, "file for the last state, to go on from");
+  verb->add_option("--restart", options->restart, "goes on from a saved state, with the same bits");
   verb->callback([&action, options] { action = [options] { return run_simulate(*options); }; });
 }
 

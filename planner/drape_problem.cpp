@@ -130,14 +130,19 @@ DrapeProblem::DrapeProblem(Case value)
   }
 }
 
-Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, int frames) const {
+Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, int frames,
+                        RunPart part) const {
   const Model& model = *models_.at(fidelity);
   Drape drape;
-  RunRequest request{.schedule = &schedule, .duration = 0, .frames = frames, .observe = nullptr};
+  RunRequest request;
+  request.schedule = &schedule;
+  request.frames = frames;
+  request.from = part.from;
+  request.pause = part.pause;
   if (frames > 0) request.observe = [&drape](const Snapshot& frame) { drape.frames.push_back(frame); };
   drape.run = simulate(model, request);
   drape.separation = separations(drape.run.final, *case_.mold, case_.material.thickness);
-  if (drape.run.report.status == RunStatus::diverged) {
+  if (drape.run.report.status != RunStatus::done) {
     drape.score = failed_score(drape.run.report.message);
     return drape;
   }

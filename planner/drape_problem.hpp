@@ -35,6 +35,12 @@ struct Drape {
   std::vector<Snapshot> frames;    ///< equally spaced in time, as many as were asked for
 };
 
+/// A part of a run: from a saved state, and up to a pause [s, schedule's clock]; see RunRequest.
+struct RunPart {
+  const State* from = nullptr;
+  double pause = 0;
+};
+
 /// Const after construction; shared by all threads.
 class DrapeProblem {
  public:
@@ -51,7 +57,8 @@ class DrapeProblem {
   [[nodiscard]] const Model& model(const std::string& fidelity) const { return *models_.at(fidelity); }
 
   /// Runs a schedule. Never throws for a schedule that fits the rig: a failed run is an invalid score.
-  [[nodiscard]] Drape run(const Schedule& schedule, const std::string& fidelity, int frames = 0) const;
+  [[nodiscard]] Drape run(const Schedule& schedule, const std::string& fidelity, int frames = 0,
+                          RunPart part = {}) const;
 
  private:
   Case case_;

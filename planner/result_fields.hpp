@@ -1,6 +1,7 @@
 // Names of what scores and reports hold, stated once for the evaluation log and for result files.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -51,9 +52,13 @@ void for_each_figure(ReportType& r, const Visit& visit) {
   visit("wall_seconds", r.wall_seconds);
   visit("element_updates_per_second", r.element_updates_per_second);
   visit("largest_kinetic_ratio", r.largest_kinetic_ratio);
+  visit("largest_hourglass_share", r.largest_hourglass_share);
   visit("largest_penetration", r.largest_penetration);
   visit("largest_link_error", r.largest_link_error);
 }
+
+/// The words of RunStatus, in its order.
+inline constexpr std::array<const char*, 3> kRunStatus{"done", "diverged", "paused"};
 
 /// JSON has no infinity and no NaN: null stands for every number that is not finite.
 inline nlohmann::json finite(double value) {
@@ -82,7 +87,7 @@ inline nlohmann::json report_json(const RunReport& report) {
   for_each_figure(report, [&](const char* key, double value) { out[key] = finite(value); });
   for_each_energy(report.energy, [&](const char* key, double value) { energy[key] = finite(value); });
   out["energy"] = energy;
-  out["status"] = report.status == RunStatus::done ? "done" : "diverged";
+  out["status"] = kRunStatus[size_t(report.status)];
   out["message"] = report.message;
   out["steps"] = report.steps;
   out["state_hash"] = hex(report.state_hash);
