@@ -12,6 +12,7 @@ struct SectionStiffness {
   V couple1, couple2;    ///< fibre force by curvature, magnitude [N]
   V bend1, bend2;        ///< fibres [N m]
   V shear;               ///< of the shear angle [N/m]
+  V sine;                ///< magnitude, of the shear angle [-]
 };
 
 /// The section where every fibre has the modulus `fibre` and the shear curve the slope `shear` [Pa]. A fibre
@@ -19,7 +20,7 @@ struct SectionStiffness {
 inline SectionStiffness<double> steepest_section(double thickness, double fibre, double shear) {
   const double stretch = thickness * fibre, couple = stretch * thickness / 8,
                bend = stretch * thickness * thickness / 12;
-  return {stretch, stretch, couple, couple, bend, bend, thickness * shear};
+  return {stretch, stretch, couple, couple, bend, bend, thickness * shear, 1};
 }
 
 /// Squared radius of gyration of directors [m^2]: that of the section, enlarged by a ninth of the element's
@@ -61,7 +62,7 @@ V element_bound(const ElementGeometry<V>& g, const KernelMaterial& material,
   // Mean shear along both fibres, and the linear part along the element's own directions r and s.
   const V r2 = g.r11 * g.r11 + g.r12 * g.r12, s2 = g.r21 * g.r21 + g.r22 * g.r22;
   const V det = g.r11 * g.r22 - g.r12 * g.r21, det2 = det * det;
-  const V mean = max(b11, b22) + b12 + V(0.5) / gyration2;
+  const V mean = max(b11, b22) + b12 + V(0.25) * (V(1.0) + section.sine) / gyration2;
   const V linear = V(1.0 / 12) * ((r2 + s2) / det2 + r2 * s2 / (det2 * gyration2));
   const V bent = V(1.0) + (abs(g.skew1) + abs(g.skew2)) / sqrt(r2 + s2);
   const V transverse = g.area * V(material.transverse) * max(mean, linear) * bent;
@@ -72,10 +73,10 @@ V element_bound(const ElementGeometry<V>& g, const KernelMaterial& material,
 template <int N, class V, class Law>
 SectionStiffness<V> section_tangent(const ElementGeometry<V>& g, const KernelMaterial& material,
                                     const Law& law, const Corners<V>& x, const Corners<V>& d) {
-  using std::abs, std::sqrt;
+  using std::abs, std::max, std::sqrt;
   const ElementMotion<V> m = element_motion(g, x, d);
   const V zero(0.0), one(1.0);
-  SectionStiffness<V> sum{zero, zero, zero, zero, zero, zero, zero};
+  SectionStiffness<V> sum{zero, zero, zero, zero, zero, zero, zero, zero};
   for (size_t k = 0; k < size_t(N); ++k) {
     const V s(SectionRule<N>::place[k] * material.thickness),
         w(SectionRule<N>::weight[k] * material.thickness);
@@ -90,6 +91,7 @@ SectionStiffness<V> section_tangent(const ElementGeometry<V>& g, const KernelMat
     sum.couple2 += s * e2;
     sum.bend1 += s * s * e1;
     sum.bend2 += s * s * e2;
+    sum.sine = max(sum.sine, abs(sine));
     // tau / cos g over sin g: slope along the fibres' turning, and what turns the force itself.
     sum.shear +=
         w * (law.shear_slope(sine, 3 * k + 2) * (one - sine * sine) + V(2.0) * abs(material.shear(sine)));

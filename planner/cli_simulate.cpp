@@ -59,8 +59,9 @@ void finish_run(const SimulateOptions& options, const Model& model, const RunRes
   if (!options.save.empty()) save_state(options.save, model, run.state);
   if (run.report.status == RunStatus::diverged) return;
   NodalStiffness scratch(model.node_count());
-  result["stable_step"] = {{"estimate", finite(stable_step(model, run.state, scratch))},
-                           {"true", finite(true_stable_step(model, run.state))}};
+  const double estimate = stable_step(model, run.state, scratch), limit = true_stable_step(model, run.state);
+  result["stable_step"] = {
+      {"estimate", finite(estimate)}, {"true", finite(limit)}, {"share", finite(estimate / limit)}};
 }
 
 std::string summary(const RunReport& report, int nodes) {

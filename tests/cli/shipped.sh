@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# What holds for every shipped case: books, hourglass energy, penetration, and a step near its true limit.
+# Usage: shipped.sh DRAPEPLAN SOURCE_DIR JSON_VALUE CASE [OPTIONS of simulate...]
+set -uo pipefail
+. "$(dirname "$0")/kit.sh"
+case_file=$source/cases/$4.json
+shift 4
+
+expect 0 simulate "$case_file" --json "$@"
+within "$work/stdout" /energy/balance_error 0 1e-9
+within "$work/stdout" /largest_hourglass_share 0 0.02
+within "$work/stdout" /largest_penetration 0 15e-6   # a twentieth of the thickness
+within "$work/stdout" /largest_link_error 0 1e-7     # a millionth of 100 mm
+within "$work/stdout" /stable_step/share 0.8 1       # of the true limit, at the end
+finish 6
