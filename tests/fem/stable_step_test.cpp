@@ -56,6 +56,35 @@ double ratio(const std::string& what, const Model& model, const State& state) {
   return estimate / truth;
 }
 
+/// The same for the ply alone (without mold and rig), the truth being taken where all fibres are 6e-5 longer.
+///
+/// In a drape 0.52 to 0.74 of the truth are played. Two things are to blame, and this ratio is without them:
+/// - Fibres whose strain is exactly zero (the weft of a bent strip, most of a flat start) stand on the kink
+///   between tension and compression. Central differences over 1e-9 m take the mean of both slopes; a motion
+///   of 1e-5 meets the steeper one, so the truth at the state is not what the step must bear. It costs a flat
+///   start 0.74 of the step.
+/// - Contact: springs and dashpots are sized by the step for all strains, and weigh more against the softer
+///   ply that is there. They cost 0.85 to 0.91 of the step; the truth, which knows no dashpots, sees 0.97 of
+///   that on the dome.
+/// What is left in the drape (0.83) is the bound of an element, the coupling of bending and stretching most.
+double ply_ratio(const std::string& what, const Model& model, const State& state) {
+  Scene bare = model.scene();
+  bare.mold.reset();
+  bare.friction.reset();
+  bare.rig.reset();
+  const Model ply(std::move(bare));
+  constexpr double kLonger = 6e-5;  // beyond the kink, and within the slopes that the estimate looks ahead to
+  State longer = state;
+  for (auto* part : {&longer.x.x, &longer.x.y, &longer.x.z}) {
+    for (double& value : *part) value *= 1 + kLonger;
+  }
+  NodalStiffness scratch(ply.node_count());
+  const double estimate = stable_step(ply, state, scratch), truth = true_stable_step(ply, longer);
+  std::printf("%-46s estimate %7.3f us, true %7.3f us, ratio %.3f\n",
+              ("  ply alone, off the kink: " + what).c_str(), 1e6 * estimate, 1e6 * truth, estimate / truth);
+  return estimate / truth;
+}
+
 /// Never above the truth, but for the 0.1 % to which that is known.
 constexpr double kSafe = 1.001;
 constexpr double kClose = 0.8;
@@ -85,7 +114,9 @@ TEST(StableStep, IsCloseForAWovenStripThatHangs) {
   for (const double duration : {0.05, 0.6}) {
     const RunResult run = simulate(model, {.duration = duration});
     ASSERT_EQ(run.report.status, RunStatus::done);
-    EXPECT_CLOSE_BOUND(ratio("woven strip hanging, " + std::to_string(duration) + " s", model, run.state), 0);
+    EXPECT_CLOSE_BOUND(ratio("woven strip hanging, " + std::to_string(duration) + " s", model, run.state),
+                       0.7);
+    EXPECT_CLOSE_BOUND(ply_ratio("strip", model, run.state), 0.95);
   }
 }
 
@@ -99,7 +130,8 @@ TEST(StableStep, IsCloseForASheetOnADome) {
   const Model model(scene);
   const RunResult run = simulate(model, {.duration = 0.5});
   ASSERT_EQ(run.report.status, RunStatus::done) << run.report.message;
-  EXPECT_CLOSE_BOUND(ratio("woven sheet on a dome", model, run.state), 0);
+  EXPECT_CLOSE_BOUND(ratio("woven sheet on a dome", model, run.state), 0.5);
+  EXPECT_CLOSE_BOUND(ply_ratio("dome", model, run.state), 0.93);
 }
 
 TEST(StableStep, IsCloseForShearedSheets) {
@@ -112,21 +144,23 @@ TEST(StableStep, IsCloseForShearedSheets) {
       EXPECT_CLOSE_BOUND(ratio((linear ? "linear sheet sheared by " : "woven sheet sheared by ") +
                                    std::to_string(int(angle)) + " deg",
                                model, state),
-                         0);
+                         0.95);
     }
   }
 }
 
 TEST(StableStep, IsCloseForDistortedAndOutlineMeshes) {
   const Model distorted(sheet(stiff_fabric(), test::distorted_mesh(0.08, 0.08, 0.01, 0.2)));
-  EXPECT_CLOSE_BOUND(ratio("linear, distorted mesh", distorted, flat(distorted)), 0);
+  EXPECT_CLOSE_BOUND(ratio("linear, distorted mesh", distorted, flat(distorted)), kClose);
   Polygon turned;
   const Eigen::Rotation2Dd by(45 * kDegree);
   for (const Eigen::Vector2d& corner : {Eigen::Vector2d(-0.06, -0.03), Eigen::Vector2d(0.06, -0.03),
-                                       Eigen::Vector2d(0.06, 0.03), Eigen::Vector2d(-0.06, 0.03)})
+                                        Eigen::Vector2d(0.06, 0.03), Eigen::Vector2d(-0.06, 0.03)})
     turned.push_back(by * corner);
   const Model outline(sheet(stiff_fabric(), outline_mesh(turned, 0.01)));
-  EXPECT_CLOSE_BOUND(ratio("linear, rectangle turned by 45 deg", outline, flat(outline)), 0);
+  // Triangles repeat a node, which gets the element's bound twice on a third of its mass: the bound of a
+  // triangle alone is 0.65 of its true step, that of the quadrilaterals beside it 0.99.
+  EXPECT_CLOSE_BOUND(ratio("linear, rectangle turned by 45 deg", outline, flat(outline)), 0.72);
 }
 
 /// The 3 x 3 rig of the quick case with the woven law of the tests.
@@ -171,7 +205,9 @@ TEST(StableStep, IsCloseThroughoutADrape) {
   for (const double pause : {1e-3, 3.5, 0.0}) {
     const RunResult run = simulate(model, {.schedule = &schedule, .pause = pause});
     ASSERT_NE(run.report.status, RunStatus::diverged) << run.report.message;
-    EXPECT_CLOSE_BOUND(ratio("quick drape at " + std::to_string(run.final.time) + " s", model, run.state), 0);
+    EXPECT_CLOSE_BOUND(ratio("quick drape at " + std::to_string(run.final.time) + " s", model, run.state),
+                       0.6);
+    EXPECT_CLOSE_BOUND(ply_ratio("drape", model, run.state), kClose);
   }
 }
 
@@ -207,7 +243,7 @@ TEST(StableStep, TruthIsWhereALinearStripBeginsToBlowUp) {
   for (const double viscosity : {0.0, 0.1}) {
     Scene scene = strip(stiff_fabric());
     scene.options.bulk_viscosity = viscosity;
-    for (const double share : {0.9, 0.95, 0.98, 1.02, 1.05, 1.1, 1.15})
+    for (const double share : {0.98, 1.02})
       std::printf("viscosity %.1f, %.2f of the true step: energy grows by %.2g\n", viscosity, share,
                   growth_at(scene, share));
     EXPECT_LE(growth_at(scene, 0.98), 100) << viscosity;
@@ -226,16 +262,17 @@ TEST(Rest, EndsARunThatHasComeToRestBeforeItsTime) {
     }
     return run.final.position[at];
   };
-  const RunResult whole = simulate(Model(scene), {.duration = 20});
+  const RunResult whole = simulate(Model(scene), {.duration = 8});
   EXPECT_EQ(whole.report.message, "the time is over");
-  scene.rest = RestCriterion{};
-  const RunResult rested = simulate(Model(scene), {.duration = 20});
+  scene.rest =
+      RestCriterion{.speed = 1e-5};  // what is left is the speed over the slowest rate, here some 2.5 / s
+  const RunResult rested = simulate(Model(scene), {.duration = 8});
   EXPECT_EQ(rested.report.message, "the ply is at rest");
   EXPECT_EQ(rested.report.status, RunStatus::done);
-  EXPECT_LE(rested.report.simulated_time, 19);
+  EXPECT_LE(rested.report.simulated_time, 7);
   EXPECT_GE(rested.report.simulated_time, scene.rest->hold);
   const double drop = std::abs(tip(whole).z()), apart = (tip(rested) - tip(whole)).norm();
-  std::printf("at rest after %.2f s of 20 s; tip %.4f mm, off by %.2e of it\n", rested.report.simulated_time,
+  std::printf("at rest after %.2f s of 8 s; tip %.4f mm, off by %.2e of it\n", rested.report.simulated_time,
               1e3 * drop, apart / drop);
   EXPECT_GE(drop, 0.01);
   EXPECT_LE(apart, 1e-3 * drop);
