@@ -60,4 +60,4 @@ refuse '--pause: ' simulate "$strip" --pause '1 mm' --save "$work/x.state"
 # What cannot be written is named, and is no fault of the input.
 expect 3 simulate "$strip" --quiet "${coarse[@]}" --pause '0.01 s' --save "$work/no/folder.state"
 grep -qF "$work/no/folder.state" "$work/stderr" || fail "no path: $(cat "$work/stderr")"
-finish 40
+finish 34
