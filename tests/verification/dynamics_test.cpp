@@ -1,4 +1,9 @@
 // Motion: waves along a bar, order in time, a hanging chain.
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "fem/state_file.hpp"
 #include "tests/verification/kit.hpp"
 
 namespace drapeplan {
@@ -64,41 +69,119 @@ TEST(Bar, CarriesAFrontWithTheStressOfItsEndVelocity) {
   EXPECT_LE(test::figure("stress behind it [Pa]", kBar.modulus * strain, density * kSpeed * velocity), 0.01);
 }
 
-/// Position of the tip after a fixed time of a strip that was set swinging smoothly: no force at the start,
-/// so the half-step velocities are those of the start up to second order.
-Eigen::Vector3d swung(double safety, int steps) {
-  constexpr int kElements = 8;
-  Scene scene = bar({1e9, 2e-2, 1}, kElements, kLength / kElements);
+constexpr int kSwingElements = 8;
+constexpr int kSwingSteps = 2000;     // of the coarsest run
+constexpr double kSwingSafety = 0.2;  // of the coarsest run
+constexpr int kExact = 32;            // times finer than the coarsest run
+
+/// A strip to be set swinging; its step is `safety` of the stable one.
+Model swing_model(double safety) {
+  Scene scene = bar({1e9, 2e-2, 1}, kSwingElements, kLength / kSwingElements);
   scene.options.step_safety = safety;
   scene.options.bulk_viscosity = 0;  // grows with the step: of first order
-  const Model model(scene);
+  return Model(scene);
+}
+
+/// Smooth and with no force at the start, so the half-step velocities are those of the start up to second
+/// order.
+State swing_start(const Model& model) {
   State state = model.flat_state(0);
   for (size_t n = 0; n < size_t(model.node_count()); ++n) {
-    const double x = scene.mesh.rest[n].x() / kLength;
+    const double x = model.scene().mesh.rest[n].x() / kLength;
     if (x == 0) continue;
     state.v.z[n] = 40 * x * x;
     state.w.x[n] = -80 * x / kLength;
   }
-  Workspace work(model);
-  for (int k = 0; k < steps; ++k) test::advance(model, state, work);
-  EXPECT_GT(std::abs(state.x.z[kElements]), 0.02);
-  return get(state.x, kElements);
+  return state;
 }
 
-TEST(Motion, IsOfSecondOrderInTime) {
-  const int steps = 2000;
-  const Eigen::Vector3d exact = swung(0.2 / 32, steps * 32);
-  std::vector<double> error;
-  for (const int halvings : {0, 1, 2}) {
-    const int parts = 1 << halvings;
-    error.push_back((swung(0.2 / parts, steps * parts) - exact).norm());
+void play(const Model& model, State& state, int steps) {
+  Workspace work(model);
+  for (int k = 0; k < steps; ++k) test::advance(model, state, work);
+}
+
+/// The strip after kSwingSteps of the coarsest run, with steps `parts` times smaller.
+State swung(int parts) {
+  const Model model = swing_model(kSwingSafety / parts);
+  State state = swing_start(model);
+  play(model, state, kSwingSteps * parts);
+  return state;
+}
+
+/// The same, through a file half-way: model, workspace and state are destroyed and built anew.
+State swung_with_restart(int parts) {
+  const int half = kSwingSteps * parts / 2;
+  const auto file = std::filesystem::path(testing::TempDir()) /
+                    ("drapeplan_swing_" + std::to_string(parts) + "_" + std::to_string(getpid()) + ".state");
+  {
+    const Model model = swing_model(kSwingSafety / parts);
+    State state = swing_start(model);
+    play(model, state, half);
+    save_state(file, model, state);
   }
+  const Model model = swing_model(kSwingSafety / parts);
+  StateReading reading = load_state(file, model);
+  std::filesystem::remove(file);
+  if (!reading.value) throw std::runtime_error(reading.error);
+  play(model, *reading.value, half);
+  return *reading.value;
+}
+
+/// The same with a step that swells and shrinks smoothly by half of it, ten times in the run.
+State swung_with_changing_step(int parts) {
+  const Model model = swing_model(kSwingSafety / parts);
+  const int steps = kSwingSteps * parts;
+  const double end = model.dt() * steps;
+  const auto time = [&](int k) {
+    constexpr double kSwell = 0.5, kTurns = 10 * 2 * std::numbers::pi;
+    const double share = double(k) / steps;
+    return end * (share - kSwell * std::sin(kTurns * share) / kTurns);
+  };
+  State state = swing_start(model);
+  state.dt_before = time(0) - time(-1);
+  Workspace work(model);
+  double least = end, most = 0;
+  for (int k = 0; k < steps; ++k) {
+    state.dt = time(k + 1) - time(k);
+    least = std::min(least, state.dt);
+    most = std::max(most, state.dt);
+    test::advance(model, state, work);
+  }
+  EXPECT_GE(most / least, 2.9);
+  EXPECT_LE(std::abs(state.time / end - 1), 1e-10);
+  return state;
+}
+
+/// Halves the step twice: the tip's place converges with second order to that of constant, much finer steps.
+void expect_second_order_in_time(State (*swing)(int)) {
+  const Eigen::Vector3d exact = get(swung(kExact).x, kSwingElements);
+  EXPECT_GT(std::abs(exact.z()), 0.02);
+  std::vector<double> error;
+  for (const int parts : {1, 2, 4}) error.push_back((get(swing(parts).x, kSwingElements) - exact).norm());
   for (size_t k = 1; k < error.size(); ++k) {
     const double slope = std::log2(error[k - 1] / error[k]);
     std::printf("  errors %.3g %.3g m, order in time %.3f\n", error[k - 1], error[k], slope);
     EXPECT_GE(slope, 1.8);
     EXPECT_LE(slope, 2.2);
   }
+}
+
+TEST(Motion, IsOfSecondOrderInTime) {
+  expect_second_order_in_time(swung);
+}
+
+TEST(Motion, HasTheSameBitsAndOrderAcrossARestart) {
+  for (const int parts : {1, 2, 4}) {
+    const State through = swung(parts), restarted = swung_with_restart(parts);
+    EXPECT_EQ(restarted.step, kSwingSteps * parts);
+    const int nodes = 2 * (kSwingElements + 1);
+    EXPECT_EQ(hash_state(through, nodes), hash_state(restarted, nodes)) << parts;
+  }
+  expect_second_order_in_time(swung_with_restart);
+}
+
+TEST(Motion, IsOfSecondOrderInTimeWithAStepThatChangesSmoothly) {
+  expect_second_order_in_time(swung_with_changing_step);
 }
 
 // A chain of length 1.2 spans: z = a cosh(x / a) with a = span / (2 q), sinh(q) / q = 1.2, q = 1.0653;

@@ -51,7 +51,8 @@ Mesh changed(const Mesh& mesh, const Change& change) {
   Mesh out = mesh;
   if (change.mirrored) {
     for (Vector2d& x : out.rest) x.y() = -x.y();
-    for (auto& quad : out.quads) std::swap(quad[1], quad[3]);  // counter-clockwise again
+    // Counter-clockwise again, with the first side along the warp as before.
+    for (auto& quad : out.quads) std::reverse(quad.begin(), quad.end());
     std::reverse(out.outline.begin(), out.outline.end());
   }
   if (change.renumbered) {
@@ -160,34 +161,49 @@ double largest_difference(const std::vector<Vector3d>& a, const std::vector<Vect
 Scene dome_scene() {
   Scene scene;
   scene.mesh = rectangle_mesh(0.2, 0.16, 0.0125);
-  scene.fabric = test::woven_fabric();
   scene.mold = sphere({0.02, -0.01, 0}, 0.3);
   scene.position = {0.03, 0.01};
   scene.angle = 0.3;
-  scene.start_height = 0.301;
+  scene.start_height = 0.3002;  // 0.05 mm above the top
+  scene.options.mass_scaling = 1;
   scene.gravity = 9.81;
   scene.damping = 22;
   scene.friction = 0.5;
   return scene;
 }
 
-TEST(Symmetry, ASheetOnADomeSettlesTheSameTurnedShiftedMirroredAndRenumbered) {
-  const Scene scene = dome_scene();
-  const RunRequest request{.duration = 0.1};
+/// Largest difference of a changed run from the original one, over the ply's width.
+void expect_the_same(const Scene& scene, double duration, double tolerance) {
+  const RunRequest request{.duration = duration};
   const RunResult run = simulate(Model(scene), request);
   const std::vector<Vector3d> reference = undone(run, {});
   double fall = 0;
   for (const Vector3d& x : reference) fall = std::max(fall, scene.start_height - x.z());
-  std::printf("  %lld steps, the corners fell by %.1f mm\n", static_cast<long long>(run.report.steps),
+  std::printf("  %lld steps, the corners fell by %.2f mm\n", static_cast<long long>(run.report.steps),
               1e3 * fall);
-  EXPECT_GE(fall, 0.01);
+  EXPECT_GE(fall, 2e-4);
   EXPECT_GT(run.report.energy.friction, 0);
   for (const Change& change : kChanges) {
     const auto places = undone(simulate(Model(changed(scene, change)), request), change);
     const double difference = largest_difference(places, reference) / 0.2;
     std::printf("  %-20s differs by %.2g of the ply's width\n", change.name, difference);
-    EXPECT_LE(difference, 1e-9) << change.name;
+    EXPECT_LE(difference, tolerance) << change.name;
   }
+}
+
+// Smooth laws: round-off stays round-off, through touching down, sticking and sliding.
+TEST(Symmetry, ASheetOfALinearLawSettlesOnADomeTheSame) {
+  Scene scene = dome_scene();
+  scene.fabric = test::linear_fabric(1e8, 1e5, 1e5);
+  expect_the_same(scene, 0.05, 1e-12);
+}
+
+// Fibres some ten times stiffer in tension than in compression switch between the two at round-off: 1e-13
+// after 8 ms is 1e-11 after 10 ms and 1e-6 after 40 ms. So this run ends soon after the touch at 3 ms.
+TEST(Symmetry, ASheetOfAWovenLawTouchesDownOnADomeTheSame) {
+  Scene scene = dome_scene();
+  scene.fabric = test::woven_fabric();
+  expect_the_same(scene, 0.008, 1e-11);
 }
 
 /// A 3x3 rig with interlinks over the seed's mold, coarse and fast.
