@@ -179,7 +179,8 @@ TEST(Simulate, BooksElasticWorkThatApproachesTheStoredEnergyWithSecondOrder) {
     while (state.time < 0.05) {
       const double stored = step_with_books(model, state, work);
       most = std::max(most, stored);
-      largest = std::max(largest, std::abs(-state.work[size_t(Book::internal)] - stored));
+      const double difference = std::abs(-state.work[size_t(Book::internal)] - stored);
+      if (!(difference <= largest)) largest = difference;  // NaN stays
     }
     error.push_back(largest / most);
   }
