@@ -20,6 +20,19 @@ constexpr double kServoStep = 0.5;
 /// use. The springs are some 30 times stiffer than those of free nodes then, and never govern the step.
 constexpr double kPadShare = 0.2;
 
+/// Parts of a fingerprint that have no list of numbers of their own.
+void add_mold(Fnv1a& hash, const Mold& mold) {
+  constexpr int kSamples = 17;  // per side: tells molds apart, whatever their shape
+  const Extent& extent = mold.extent();
+  for (int i = 0; i < kSamples; ++i) {
+    for (int j = 0; j < kSamples; ++j) {
+      const Eigen::Vector2d share(double(i) / (kSamples - 1), double(j) / (kSamples - 1));
+      const Eigen::Vector2d at = extent.lower + share.cwiseProduct(extent.upper - extent.lower);
+      for (const double value : {at.x(), at.y(), mold.height(at.x(), at.y())}) hash.add(value);
+    }
+  }
+}
+
 /// Largest frequency with contact over that without it. Played with the velocity of half a step before, a
 /// dashpot c counts like a spring 2 c / dt. With s = 2 / dt, spring a K of a node's row K and share z of its
 /// critical damping, s^2 = K / m (1 + a) + 2 z sqrt(a K / m) s; the larger root, over sqrt(K / m).
@@ -167,11 +180,15 @@ std::uint64_t Model::fingerprint() const {
     add(table->rates);
     for (const Curve& curve : table->curves) add(curve.strain), add(curve.stress);
   }
+  add(std::array{scene_.fabric.rate_floor, scene_.fabric.rate_filter, double(scene_.fabric.shear_measure),
+                 scene_.fabric.transverse_shear_modulus});
   const FemOptions& o = scene_.options;
   add(std::array{stable_dt_, alpha_, o.time_scaling, o.step_safety, double(o.section_points),
                  double(o.step_interval), o.hourglass, o.bulk_viscosity, o.contact_stiffness,
                  o.contact_damping, scene_.gravity.value_or(0), scene_.friction.value_or(-1),
                  scene_.position.x(), scene_.position.y(), scene_.angle});
+  if (scene_.mold) add_mold(hash, *scene_.mold);
+  if (scene_.rest) add(std::array{scene_.rest->speed, scene_.rest->hold});
   if (scene_.loads) {
     for (const auto* list : {&scene_.loads->forces, &scene_.loads->moments}) {
       for (const NodalLoad& load : *list) hash.add(double(load.node)), add(load.value);
@@ -186,7 +203,8 @@ std::uint64_t Model::fingerprint() const {
   if (scene_.rig) {
     const RigOptions& r = *scene_.rig;
     add(std::array{r.spacing, r.pad_radius, r.pad_mass, r.joint_offset, r.tilt_limit, r.actuator_stiffness,
-                   r.actuator_force_limit, double(r.columns), double(r.rows)});
+                   r.actuator_force_limit, double(r.columns), double(r.rows), double(r.driven)});
+    if (r.fixed) add(*r.fixed);
     if (r.rotation_limits) {
       const RotationLimits& limits = *r.rotation_limits;
       add(std::array{limits.about_warp[0], limits.about_warp[1], limits.about_weft[0], limits.about_weft[1]});

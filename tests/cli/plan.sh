@@ -88,6 +88,12 @@ expect 0 plan "$quick" "$work/second.json" --json --out "$work/several" "${few[@
 same "$(hash_of_best "$work/several/flexdraper-quick/result.json")" "$(hash_of_best "$work/several/second/result.json")" \
   "the same case twice in one call"
 within "$work/stdout" /cases/1/best/score/objective 0 1e6
+# Three threads, more than a machine may have cores: the same again.
+expect 0 plan "$quick" --threads 3 --quiet --out "$work/three" "${few[@]}"
+same "$(hash_of_best "$work/several/flexdraper-quick/result.json")" "$(hash_of_best "$work/three/result.json")" \
+  "state hash of the best with three threads"
+same "$(value "$work/several/flexdraper-quick/result.json" /history)" "$(value "$work/three/result.json" /history)" \
+  "history with three threads"
 # Two files of one name would share a folder.
 mkdir "$work/twin" && cp "$work/second.json" "$work/twin/"
 refuse 'second.json' plan "$work/second.json" "$work/twin/second.json" "${few[@]}"
@@ -98,4 +104,4 @@ refuse '/grippers/spacing: "150 mm": gripper [3, 3] is off the ply' plan "$quick
 refuse '/material/thickness: "-1 mm": out of range' plan "$quick" --set 'material.thickness=-1 mm'
 refuse '/ply/widht: unknown key' plan "$quick" --set 'ply.widht=1 mm'
 refuse "$work/none.json" plan "$work/none.json"
-finish 80
+finish 83

@@ -1,4 +1,9 @@
 // Motion: waves along a bar, order in time, a hanging chain.
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "fem/state_file.hpp"
 #include "tests/verification/kit.hpp"
 
 namespace drapeplan {
@@ -64,40 +69,119 @@ TEST(Bar, CarriesAFrontWithTheStressOfItsEndVelocity) {
   EXPECT_LE(test::figure("stress behind it [Pa]", kBar.modulus * strain, density * kSpeed * velocity), 0.01);
 }
 
-/// Position of the tip after a fixed time of a strip that was set swinging smoothly: no force at the start,
-/// so the half-step velocities are those of the start up to second order.
-Eigen::Vector3d swung(double safety, int steps) {
-  constexpr int kElements = 8;
-  Scene scene = bar({1e9, 2e-2, 1}, kElements, kLength / kElements);
+constexpr int kSwingElements = 8;
+constexpr int kSwingSteps = 2000;     // of the coarsest run
+constexpr double kSwingSafety = 0.2;  // of the coarsest run
+constexpr int kExact = 32;            // times finer than the coarsest run
+
+/// A strip to be set swinging; its step is `safety` of the stable one.
+Model swing_model(double safety) {
+  Scene scene = bar({1e9, 2e-2, 1}, kSwingElements, kLength / kSwingElements);
   scene.options.step_safety = safety;
   scene.options.bulk_viscosity = 0;  // grows with the step: of first order
-  const Model model(scene);
+  return Model(scene);
+}
+
+/// Smooth and with no force at the start, so the half-step velocities are those of the start up to second
+/// order.
+State swing_start(const Model& model) {
   State state = model.flat_state(0);
   for (size_t n = 0; n < size_t(model.node_count()); ++n) {
-    const double x = scene.mesh.rest[n].x() / kLength;
+    const double x = model.scene().mesh.rest[n].x() / kLength;
     if (x == 0) continue;
     state.v.z[n] = 40 * x * x;
     state.w.x[n] = -80 * x / kLength;
   }
-  Workspace work(model);
-  for (int k = 0; k < steps; ++k) test::advance(model, state, work);
-  EXPECT_GT(std::abs(state.x.z[kElements]), 0.02);
-  return get(state.x, kElements);
+  return state;
 }
 
-TEST(Motion, IsOfSecondOrderInTime) {
-  const int steps = 2000;
-  const Eigen::Vector3d exact = swung(0.2 / 32, steps * 32);
+/// How the strip is played, over the time of kSwingSteps steps of the coarsest run.
+struct Swing {
+  int parts = 1;           ///< of the coarsest run's step
+  bool swelling = false;   ///< the step swells and shrinks smoothly by half of it, ten times in the run
+  bool restarted = false;  ///< model, workspace and state are destroyed half-way and built anew from a file
+
+  [[nodiscard]] Model model() const { return swing_model(kSwingSafety / parts); }
+  [[nodiscard]] int steps() const { return kSwingSteps * parts; }
+  /// Step k of a swelling run, as a share of the mean one: sums to `steps`.
+  [[nodiscard]] double size(int k) const {
+    constexpr double kSwell = 0.5, kTurns = 10 * 2 * std::numbers::pi;
+    const auto time = [&](int at) {
+      return at - kSwell * steps() / kTurns * std::sin(kTurns * at / steps());
+    };
+    return time(k + 1) - time(k);
+  }
+};
+
+void play(const Swing& swing, const Model& model, State& state, int last) {
+  Workspace work(model);
+  while (state.step < last) {
+    if (swing.swelling) state.dt = model.dt() * swing.size(int(state.step));
+    test::advance(model, state, work);
+  }
+}
+
+/// The state read back from a file, which is removed.
+State through_file(const Swing& swing, const State& state) {
+  const auto file =
+      std::filesystem::path(testing::TempDir()) / ("drapeplan_swing_" + std::to_string(getpid()) + ".state");
+  save_state(file, swing.model(), state);
+  const StateReading reading = load_state(file, swing.model());
+  std::filesystem::remove(file);
+  if (!reading.value) throw std::runtime_error(reading.error);
+  return *reading.value;
+}
+
+State swung(const Swing& swing) {
+  const Model model = swing.model();
+  State state = swing_start(model);
+  if (swing.swelling) state.dt_before = model.dt() * swing.size(-1);
+  if (swing.restarted) {
+    play(swing, model, state, swing.steps() / 2 + 3);  // where a swelling step grows
+    state = through_file(swing, state);
+    const Model anew = swing.model();
+    play(swing, anew, state, swing.steps());
+  } else {
+    play(swing, model, state, swing.steps());
+  }
+  EXPECT_EQ(state.step, swing.steps());
+  EXPECT_LE(std::abs(state.time / (model.dt() * swing.steps()) - 1), 1e-10);
+  return state;
+}
+
+/// Halves the step twice: the tip's place converges with second order to that of constant, much finer steps.
+void expect_second_order_in_time(Swing swing) {
+  const Eigen::Vector3d exact = get(swung({.parts = kExact}).x, kSwingElements);
+  EXPECT_GT(std::abs(exact.z()), 0.02);
   std::vector<double> error;
-  for (const int halvings : {0, 1, 2}) {
-    const int parts = 1 << halvings;
-    error.push_back((swung(0.2 / parts, steps * parts) - exact).norm());
+  for (const int parts : {1, 2, 4}) {
+    swing.parts = parts;
+    error.push_back((get(swung(swing).x, kSwingElements) - exact).norm());
   }
   for (size_t k = 1; k < error.size(); ++k) {
     const double slope = std::log2(error[k - 1] / error[k]);
     std::printf("  errors %.3g %.3g m, order in time %.3f\n", error[k - 1], error[k], slope);
     EXPECT_GE(slope, 1.8);
     EXPECT_LE(slope, 2.2);
+  }
+}
+
+TEST(Motion, IsOfSecondOrderInTime) {
+  expect_second_order_in_time({});
+}
+
+TEST(Motion, IsOfSecondOrderInTimeWithAStepThatChangesSmoothly) {
+  expect_second_order_in_time({.swelling = true});
+}
+
+TEST(Motion, HasTheSameBitsAndOrderAcrossARestart) {
+  const int nodes = swing_model(1).node_count();
+  for (const bool swelling : {false, true}) {
+    for (const int parts : {1, 2, 4}) {
+      const State through = swung({parts, swelling, false}), restarted = swung({parts, swelling, true});
+      EXPECT_EQ(hash_state(through, nodes), hash_state(restarted, nodes)) << parts << " " << swelling;
+    }
+    expect_second_order_in_time({.swelling = swelling, .restarted = true});
   }
 }
 

@@ -1,0 +1,283 @@
+// The estimated stable step against the true one in the states that a drape meets; the end at rest.
+#include "fem/stable_step.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "fem/simulate.hpp"
+#include "tests/fem/scenes.hpp"
+#include "tests/mapping/molds.hpp"
+
+namespace drapeplan {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// A strip along the warp, its left end clamped.
+Scene strip(const Fabric& fabric, double length = 0.1) {
+  Scene scene;
+  scene.mesh = rectangle_mesh(length, 0.03, 0.01);
+  scene.fabric = fabric;
+  for (size_t n = 0; n < scene.mesh.rest.size(); ++n) {
+    if (scene.mesh.rest[n].x() < -0.499 * length) scene.clamped.push_back(int(n));
+  }
+  return scene;
+}
+
+Scene sheet(const Fabric& fabric, Mesh mesh = rectangle_mesh(0.08, 0.08, 0.01)) {
+  Scene scene;
+  scene.mesh = std::move(mesh);
+  scene.fabric = fabric;
+  return scene;
+}
+
+Fabric stiff_fabric() {
+  return test::linear_fabric(1e9, 1e7, 2e6);
+}
+
+/// Puts every fibre at an extension of 1e-4 and every angle at `shear`: off the kink at zero.
+void trellis(const Model& model, State& state, double shear, double strain = 1e-4) {
+  for (size_t n = 0; n < size_t(model.node_count()); ++n) {
+    const Eigen::Vector2d X = (1 + strain) * model.scene().mesh.rest[n];
+    test::put(state.x, n,
+              {X.x() + std::sin(shear) * X.y(), std::cos(shear) * X.y(), test::get(state.x, n).z()});
+  }
+}
+
+/// Estimated over true stable step of a state, printed.
+double ratio(const std::string& what, const Model& model, const State& state) {
+  NodalStiffness scratch(model.node_count());
+  const double estimate = stable_step(model, state, scratch), truth = true_stable_step(model, state);
+  std::printf("%-46s estimate %7.3f us, true %7.3f us, ratio %.3f; for all strains %.3f\n", what.c_str(),
+              1e6 * estimate, 1e6 * truth, estimate / truth, model.stable_dt() / truth);
+  EXPECT_GE(estimate, model.stable_dt() * (1 - 1e-12)) << what;
+  return estimate / truth;
+}
+
+/// The same for the ply alone (without mold and rig), the truth being taken where all fibres are 6e-5 longer.
+///
+/// In a drape 0.52 to 0.74 of the truth are played. Two things are to blame, and this ratio is without them:
+/// - Fibres whose strain is exactly zero (the weft of a bent strip, most of a flat start) stand on the kink
+///   between tension and compression. Central differences over 1e-9 m take the mean of both slopes; a motion
+///   of 1e-5 meets the steeper one, so the truth at the state is not what the step must bear. It costs a flat
+///   start 0.74 of the step.
+/// - Contact: springs and dashpots are sized by the step for all strains, and weigh more against the softer
+///   ply that is there. They cost 0.85 to 0.91 of the step; the truth, which knows no dashpots, sees 0.97 of
+///   that on the dome.
+/// What is left in the drape (0.83) is neither the coupling of bending and stretching nor the look-ahead of
+/// the slopes: without the one 0.85, without the other 0.84.
+double ply_ratio(const std::string& what, const Model& model, const State& state) {
+  Scene bare = model.scene();
+  bare.mold.reset();
+  bare.friction.reset();
+  bare.rig.reset();
+  const Model ply(std::move(bare));
+  constexpr double kLonger = 6e-5;  // beyond the kink, and within the slopes that the estimate looks ahead to
+  State longer = state;
+  for (auto* part : {&longer.x.x, &longer.x.y, &longer.x.z}) {
+    for (double& value : *part) value *= 1 + kLonger;
+  }
+  NodalStiffness scratch(ply.node_count());
+  const double estimate = stable_step(ply, state, scratch), truth = true_stable_step(ply, longer);
+  std::printf("%-46s estimate %7.3f us, true %7.3f us, ratio %.3f\n",
+              ("  ply alone, off the kink: " + what).c_str(), 1e6 * estimate, 1e6 * truth, estimate / truth);
+  return estimate / truth;
+}
+
+/// Never above the truth, but for the 0.1 % to which that is known.
+constexpr double kSafe = 1.001;
+constexpr double kClose = 0.8;
+
+#define EXPECT_CLOSE_BOUND(value, least) \
+  do {                                   \
+    const double got = value;            \
+    EXPECT_LE(got, kSafe);               \
+    EXPECT_GE(got, least);               \
+  } while (false)
+
+State flat(const Model& model) {
+  return model.flat_state(model.scene().start_height);
+}
+
+TEST(StableStep, IsCloseForAFlatLinearStripAndSheets) {
+  const Model narrow(strip(stiff_fabric())), wide(sheet(stiff_fabric()));
+  EXPECT_CLOSE_BOUND(ratio("linear strip, flat", narrow, flat(narrow)), kClose);
+  EXPECT_CLOSE_BOUND(ratio("linear sheet, flat", wide, flat(wide)), kClose);
+}
+
+TEST(StableStep, IsCloseForAWovenStripThatHangs) {
+  Scene scene = strip(test::woven_fabric());
+  scene.gravity = 9.81;
+  scene.damping = 22;
+  const Model model(scene);
+  for (const double duration : {0.05, 0.6}) {
+    const RunResult run = simulate(model, {.duration = duration});
+    ASSERT_EQ(run.report.status, RunStatus::done);
+    EXPECT_CLOSE_BOUND(ratio("woven strip hanging, " + std::to_string(duration) + " s", model, run.state),
+                       0.7);
+    EXPECT_CLOSE_BOUND(ply_ratio("strip", model, run.state), 0.95);
+  }
+}
+
+TEST(StableStep, IsCloseForASheetOnADome) {
+  Scene scene = sheet(test::woven_fabric(), rectangle_mesh(0.12, 0.12, 0.01));
+  scene.mold = sphere({0, 0, 0}, 0.2);
+  scene.friction = 0.5;
+  scene.start_height = 0.2003;
+  scene.gravity = 9.81;
+  scene.damping = 22;
+  const Model model(scene);
+  const RunResult run = simulate(model, {.duration = 0.5});
+  ASSERT_EQ(run.report.status, RunStatus::done) << run.report.message;
+  EXPECT_CLOSE_BOUND(ratio("woven sheet on a dome", model, run.state), 0.5);
+  EXPECT_CLOSE_BOUND(ply_ratio("dome", model, run.state), 0.93);
+}
+
+TEST(StableStep, IsCloseForShearedSheets) {
+  for (const Fabric& fabric : {stiff_fabric(), test::woven_fabric()}) {
+    const Model model(sheet(fabric));
+    for (const double angle : {0.0, 20.0, 45.0}) {
+      State state = flat(model);
+      trellis(model, state, angle * kDegree);
+      const bool linear = fabric.shear.slowest().strain.size() == 2;
+      EXPECT_CLOSE_BOUND(ratio((linear ? "linear sheet sheared by " : "woven sheet sheared by ") +
+                                   std::to_string(int(angle)) + " deg",
+                               model, state),
+                         0.95);
+    }
+  }
+}
+
+TEST(StableStep, IsCloseForDistortedAndOutlineMeshes) {
+  const Model distorted(sheet(stiff_fabric(), test::distorted_mesh(0.08, 0.08, 0.01, 0.2)));
+  EXPECT_CLOSE_BOUND(ratio("linear, distorted mesh", distorted, flat(distorted)), kClose);
+  Polygon turned;
+  const Eigen::Rotation2Dd by(45 * kDegree);
+  for (const Eigen::Vector2d& corner : {Eigen::Vector2d(-0.06, -0.03), Eigen::Vector2d(0.06, -0.03),
+                                        Eigen::Vector2d(0.06, 0.03), Eigen::Vector2d(-0.06, 0.03)})
+    turned.push_back(by * corner);
+  const Model outline(sheet(stiff_fabric(), outline_mesh(turned, 0.01)));
+  // Triangles repeat a node, which gets the element's bound twice on a third of its mass: the bound of a
+  // triangle alone is 0.65 of its true step, that of the quadrilaterals beside it 0.99.
+  EXPECT_CLOSE_BOUND(ratio("linear, rectangle turned by 45 deg", outline, flat(outline)), 0.72);
+}
+
+/// The 3 x 3 rig of the quick case with the woven law of the tests.
+Scene quick_drape() {
+  Scene scene;
+  RigOptions rig;
+  rig.columns = rig.rows = 3;
+  rig.spacing = 0.1;
+  rig.fixed = {2, 2};
+  rig.joint_offset = 0.002;
+  scene.rig = rig;
+  scene.mesh = rectangle_mesh(0.205, 0.205, 0.017, column_places(rig), row_places(rig));
+  scene.fabric = test::woven_fabric();
+  scene.options.mass_scaling = 60;
+  scene.options.time_scaling = 16;
+  scene.position = {0.225, 0.225};
+  scene.gravity = 9.81;
+  scene.damping = 22;
+  scene.mold = seed_mold();
+  scene.friction = 1.5;
+  return scene;
+}
+
+Schedule drop(const Scene& scene) {
+  Schedule schedule;
+  schedule.blend_time = 0.1;
+  double top = -1;
+  std::vector<double> z;
+  for (int g = 0; g < scene.rig->count(); ++g) {
+    const Eigen::Vector2d xy = scene.position + scene.rig->place(g);
+    z.push_back(scene.mold->height(xy.x(), xy.y()) + scene.rig->joint_offset);
+    top = std::max(top, z.back());
+  }
+  for (const double end : z) schedule.paths.push_back({{0, top + 0.03}, {3, end + 0.03}, {6, end}, {7, end}});
+  return schedule;
+}
+
+TEST(StableStep, IsCloseThroughoutADrape) {
+  const Scene scene = quick_drape();
+  const Model model(scene);
+  const Schedule schedule = drop(scene);
+  for (const double pause : {1e-3, 3.5, 0.0}) {
+    const RunResult run = simulate(model, {.schedule = &schedule, .pause = pause});
+    ASSERT_NE(run.report.status, RunStatus::diverged) << run.report.message;
+    EXPECT_CLOSE_BOUND(ratio("quick drape at " + std::to_string(run.final.time) + " s", model, run.state),
+                       0.6);
+    EXPECT_CLOSE_BOUND(ply_ratio("drape", model, run.state), kClose);
+  }
+}
+
+/// Largest growth of the kinetic energy of small random motions, over 3000 steps of a share of the true
+/// stable step.
+double growth_at(Scene scene, double share) {
+  const Model probe(scene);
+  scene.options.step_interval = 0;
+  scene.options.step_safety = share * true_stable_step(probe, flat(probe)) / probe.stable_dt();
+  const Model model(scene);
+  State state = flat(model);
+  test::disturb(state, model.node_count(), 1e-10, 1e-9);
+  for (const int n : scene.clamped) {
+    test::put(state.x, size_t(n), test::get(flat(model).x, size_t(n)));
+    test::put(state.d, size_t(n), Eigen::Vector3d::UnitZ());
+  }
+  Workspace work(model);
+  double first = 0, largest = 0;
+  for (int k = 0; k < 3000; ++k) {
+    compute_forces(model, state, work);
+    kick_nodes(model, state, work);
+    drift_nodes(model, state);
+    advance_clock(state);
+    const double energy = kinetic_energy(model, state);
+    if (k < 50) first = std::max(first, energy);
+    largest = std::max(largest, energy);
+    if (!std::isfinite(energy) || energy > 1e12 * first) return 1e12;
+  }
+  return largest / first;
+}
+
+TEST(StableStep, TruthIsWhereALinearStripBeginsToBlowUp) {
+  for (const double viscosity : {0.0, 0.1}) {
+    Scene scene = strip(stiff_fabric());
+    scene.options.bulk_viscosity = viscosity;
+    for (const double share : {0.98, 1.02})
+      std::printf("viscosity %.1f, %.2f of the true step: energy grows by %.2g\n", viscosity, share,
+                  growth_at(scene, share));
+    EXPECT_LE(growth_at(scene, 0.98), 100) << viscosity;
+    EXPECT_GE(growth_at(scene, 1.02), 1e6) << viscosity;
+  }
+}
+
+TEST(Rest, EndsARunThatHasComeToRestBeforeItsTime) {
+  Scene scene = strip(test::woven_fabric());
+  scene.gravity = 9.81;
+  scene.damping = 22;
+  const auto tip = [&scene](const RunResult& run) {
+    size_t at = 0;
+    for (size_t n = 0; n < scene.mesh.rest.size(); ++n) {
+      if (scene.mesh.rest[n].x() > scene.mesh.rest[at].x()) at = n;
+    }
+    return run.final.position[at];
+  };
+  const RunResult whole = simulate(Model(scene), {.duration = 8});
+  EXPECT_EQ(whole.report.message, "the time is over");
+  scene.rest =
+      RestCriterion{.speed = 1e-5};  // what is left is the speed over the slowest rate, here some 2.5 / s
+  const RunResult rested = simulate(Model(scene), {.duration = 8});
+  EXPECT_EQ(rested.report.message, "the ply is at rest");
+  EXPECT_EQ(rested.report.status, RunStatus::done);
+  EXPECT_LE(rested.report.simulated_time, 7);
+  EXPECT_GE(rested.report.simulated_time, scene.rest->hold);
+  const double drop = std::abs(tip(whole).z()), apart = (tip(rested) - tip(whole)).norm();
+  std::printf("at rest after %.2f s of 8 s; tip %.4f mm, off by %.2e of it\n", rested.report.simulated_time,
+              1e3 * drop, apart / drop);
+  EXPECT_GE(drop, 0.01);
+  EXPECT_LE(apart, 1e-3 * drop);
+}
+
+}  // namespace
+}  // namespace drapeplan
