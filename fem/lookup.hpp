@@ -47,8 +47,8 @@ class Lookup {
   /// Steepest piece.
   [[nodiscard]] double largest_slope() const;
 
-  /// The grid, for tables built of several lookups: intercept and slope of each piece; steepest slope near it;
-  /// first place; pieces per unit.
+  /// The grid, for tables built of several lookups: intercept and slope of each piece; steepest slope near
+  /// it; first place; pieces per unit.
   [[nodiscard]] const std::vector<double>& lines() const { return line_; }
   [[nodiscard]] const std::vector<double>& steepest() const { return steepest_; }
   [[nodiscard]] double lower() const { return lower_; }

@@ -184,9 +184,9 @@ std::uint64_t Model::fingerprint() const {
                  scene_.fabric.transverse_shear_modulus});
   const FemOptions& o = scene_.options;
   add(std::array{stable_dt_, alpha_, o.time_scaling, o.step_safety, double(o.section_points),
-                 double(o.step_interval), o.hourglass, o.bulk_viscosity, o.contact_stiffness,
-                 o.contact_damping, scene_.gravity.value_or(0), scene_.friction.value_or(-1),
-                 scene_.position.x(), scene_.position.y(), scene_.angle});
+                 double(o.fibre_points), double(o.step_interval), o.hourglass, o.bulk_viscosity,
+                 o.contact_stiffness, o.contact_damping, scene_.gravity.value_or(0),
+                 scene_.friction.value_or(-1), scene_.position.x(), scene_.position.y(), scene_.angle});
   if (scene_.mold) add_mold(hash, *scene_.mold);
   if (scene_.rest) add(std::array{scene_.rest->speed, scene_.rest->hold});
   if (scene_.loads) {

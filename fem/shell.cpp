@@ -17,10 +17,6 @@ constexpr double kFibreStep = 4e-5;  // strain per piece: the power law of tensi
 constexpr double kTabulatedSine = 0.98;  // 78.5 degrees; tau / cos g goes on linearly from there
 constexpr int kShearIntervals = 490;
 
-/// State::history has slots of one strain per element: mid-thickness strain of both fibres at the step
-/// before, then, with rates, the lagged strains of all section points.
-constexpr size_t kStrainSlots = 2;
-
 /// A run of kLanes elements; the last one is filled up with copies of its last element that have no area.
 struct Block {
   std::array<std::array<int, size_t(kLanes)>, 4> node;  ///< by corner and lane
@@ -107,7 +103,7 @@ ElementGeometry<double> element_geometry(const Mesh& mesh, const std::array<int,
 
 struct NoTables {};
 
-template <int N, bool kRates>
+template <int N, int A, bool kRates>
 class ShellTerm final : public Shell {
  public:
   ShellTerm(const Mesh& mesh, const Fabric& fabric, const FemOptions& options)
@@ -153,7 +149,7 @@ class ShellTerm final : public Shell {
       Corners<Lanes> x, d;
       load_corners(state, block, x, d);
       const auto law = slopes_of(state, b);
-      const auto section = section_tangent<N>(block.geometry, material_, law, x, d);
+      const auto section = section_tangent<N, A>(block.geometry, material_, law, x, d);
       const Lanes bound = element_bound(block.geometry, material_, section);
       const Lanes turn = bound * gyration_squared(block.geometry, material_.thickness);
       for (size_t l = 0; l < size_t(block.used); ++l) {
@@ -183,12 +179,12 @@ class ShellTerm final : public Shell {
       load_corners(state, block, x, d);
       auto law = law_of(state, b, follow);
       double* before = &state.history[b * size_t(kLanes)];
-      FibreViscosity<Lanes> viscosity{Lanes(viscous) * block.geometry.half1 * block.geometry.half1,
-                                      Lanes(viscous) * block.geometry.half2 * block.geometry.half2,
-                                      load(before), load(before + slot_stride())};
-      shell_forces<N>(block.geometry, material_, law, viscosity, x, d, f, m);
-      store(viscosity.strain1, before);
-      store(viscosity.strain2, before + slot_stride());
+      FibreViscosity<Lanes, A> viscosity{{Lanes(viscous) * block.geometry.half1 * block.geometry.half1,
+                                          Lanes(viscous) * block.geometry.half2 * block.geometry.half2},
+                                         {}};
+      for (size_t k = 0; k < kStrainSlots; ++k) viscosity.strain[k] = load(before + k * slot_stride());
+      shell_forces<N, A>(block.geometry, material_, law, viscosity, x, d, f, m);
+      for (size_t k = 0; k < kStrainSlots; ++k) store(viscosity.strain[k], before + k * slot_stride());
       // Corners 0 and 2, then 1 and 3: neighbours in a row share nodes, so their sums are kept apart in time.
       for (const size_t c : {size_t(0), size_t(2), size_t(1), size_t(3)}) {
         scatter(f[c], block, c, force);
@@ -201,7 +197,7 @@ class ShellTerm final : public Shell {
     ShellEnergy sum;
     for (size_t e = 0; e < mesh_.quads.size(); ++e) {
       const ElementEnergy energy =
-          shell_energy<N>(geometry_[e], material_, corners(state.x, e), corners(state.d, e));
+          shell_energy<N, A>(geometry_[e], material_, corners(state.x, e), corners(state.d, e));
       sum.fabric += energy.fabric;
       sum.hourglass += energy.hourglass;
     }
@@ -223,10 +219,14 @@ class ShellTerm final : public Shell {
   }
 
   [[nodiscard]] size_t history_count() const override {
-    return (kStrainSlots + (kRates ? 3 * size_t(N) : 0)) * slot_stride();
+    return (kStrainSlots + (kRates ? 3 * size_t(N) + 2 * (A - 1) : 0)) * slot_stride();
   }
 
  private:
+  /// State::history has slots of one strain per element: mid-thickness strains of both fibres at the step
+  /// before, by point across; then, with rates, the lagged strains of the law's slots.
+  static constexpr size_t kStrainSlots = 2 * A;
+
   size_t add_block(size_t first);
   [[nodiscard]] size_t slot_stride() const { return blocks_.size() * size_t(kLanes); }
 
@@ -298,8 +298,8 @@ class ShellTerm final : public Shell {
 };
 
 /// Appends the block that starts at element `first`; a block ends where the run of consecutive nodes ends.
-template <int N, bool kRates>
-size_t ShellTerm<N, kRates>::add_block(size_t first) {
+template <int N, int A, bool kRates>
+size_t ShellTerm<N, A, kRates>::add_block(size_t first) {
   const size_t left = std::min(mesh_.quads.size() - first, size_t(kLanes));
   size_t run = 1;
   const auto continues = [&](size_t l) {
@@ -339,18 +339,25 @@ size_t ShellTerm<N, kRates>::add_block(size_t first) {
 }  // namespace
 
 std::unique_ptr<Shell> make_shell(const Mesh& mesh, const Fabric& fabric, const FemOptions& options) {
-  const auto make = [&]<int N>(std::integral_constant<int, N>) -> std::unique_ptr<Shell> {
+  const auto rates = [&]<int N, int A>(std::integral_constant<int, N>,
+                                       std::integral_constant<int, A>) -> std::unique_ptr<Shell> {
     if (options.rates && fabric.rate_dependent())
-      return std::make_unique<ShellTerm<N, true>>(mesh, fabric, options);
-    return std::make_unique<ShellTerm<N, false>>(mesh, fabric, options);
+      return std::make_unique<ShellTerm<N, A, true>>(mesh, fabric, options);
+    return std::make_unique<ShellTerm<N, A, false>>(mesh, fabric, options);
   };
+  const auto across = [&]<int N>(std::integral_constant<int, N> points) {
+    return options.fibre_points == 1 ? rates(points, std::integral_constant<int, 1>())
+                                     : rates(points, std::integral_constant<int, 2>());
+  };
+  if (options.fibre_points != 1 && options.fibre_points != 2)
+    throw std::invalid_argument("shell: fibre_points must be 1 or 2");
   switch (options.section_points) {
     case 1:
-      return make(std::integral_constant<int, 1>());
+      return across(std::integral_constant<int, 1>());
     case 3:
-      return make(std::integral_constant<int, 3>());
+      return across(std::integral_constant<int, 3>());
     case 5:
-      return make(std::integral_constant<int, 5>());
+      return across(std::integral_constant<int, 5>());
     default:
       throw std::invalid_argument("shell: section_points must be 1, 3 or 5");
   }

@@ -70,7 +70,7 @@ V element_bound(const ElementGeometry<V>& g, const KernelMaterial& material,
 }
 
 /// The section's tangent in the element's state. `law` gives slopes near the strains of each section point.
-template <int N, class V, class Law>
+template <int N, int A, class V, class Law>
 SectionStiffness<V> section_tangent(const ElementGeometry<V>& g, const KernelMaterial& material,
                                     const Law& law, const Corners<V>& x, const Corners<V>& d) {
   using std::abs, std::max, std::sqrt;
@@ -83,8 +83,18 @@ SectionStiffness<V> section_tangent(const ElementGeometry<V>& g, const KernelMat
     const Vec3<V> f1 = m.a1 + s * m.c1, f2 = m.a2 + s * m.c2;
     const V length1 = sqrt(dot(f1, f1)), length2 = sqrt(dot(f2, f2));
     const V sine = dot(f1, f2) / (length1 * length2);
-    const V e1 = w * law.fibre_slope(V(length1 - one), 3 * k),
-            e2 = w * law.fibre_slope(V(length2 - one), 3 * k + 1);
+    V e1(0.0), e2(0.0);
+    if (2 * k + 1 != size_t(N) || A == 1) {
+      e1 = w * law.fibre_slope(V(length1 - one), 3 * k);
+      e2 = w * law.fibre_slope(V(length2 - one), 3 * k + 1);
+    } else {
+      for (size_t a = 0; a < size_t(A); ++a) {
+        const V place(AcrossRule<A>::place[a] * 0.25);
+        const Vec3<V> g1 = m.a1 + (place / g.half1) * m.hx, g2 = m.a2 + (place / g.half2) * m.hx;
+        e1 = max(e1, w * law.fibre_slope(V(sqrt(dot(g1, g1)) - one), fibre_slot<N>(k, 0, a)));
+        e2 = max(e2, w * law.fibre_slope(V(sqrt(dot(g2, g2)) - one), fibre_slot<N>(k, 1, a)));
+      }
+    }
     sum.stretch1 += e1;
     sum.stretch2 += e2;
     sum.couple1 += s * e1;

@@ -153,8 +153,8 @@ TransverseShear<V> transverse_shear(const ElementGeometry<V>& g, const ElementMo
   const V lr = g.r11 * b1s + g.r12 * b2s + y, ls = g.r21 * b1r + g.r22 * b2r + y;
   const V third = q * V(1.0 / 3) * inverse * inverse;
   const V q1 = q * shear1, q2 = q * shear2;
-  const V qr = third * (g.r22 * g.r22 + g.r12 * g.r12) * lr,
-          qs = third * (g.r11 * g.r11 + g.r21 * g.r21) * ls;
+  const V qr = third * (g.r22 * g.r22 + g.r21 * g.r21) * lr,
+          qs = third * (g.r11 * g.r11 + g.r12 * g.r12) * ls;
 
   const V on_ys = inverse * (q1 * g.r22 - q2 * g.r21), on_yr = inverse * (q2 * g.r11 - q1 * g.r12),
           on_y = qr + qs;
@@ -172,24 +172,43 @@ TransverseShear<V> transverse_shear(const ElementGeometry<V>& g, const ElementMo
   return out;
 }
 
-/// Linear bulk viscosity along both fibres, at mid-thickness: stress = modulus times change over the last
+/// Linear bulk viscosity along both fibres at mid-thickness: stress = modulus times change over the last
 /// step.
-template <class V>
+template <class V, int A>
 struct FibreViscosity {
-  V modulus1, modulus2;  ///< [Pa], over the weight of the middle section point
-  V strain1, strain2;    ///< in: of the step before; out: of this one
+  std::array<V, 2> modulus;     ///< [Pa], over the weight of the middle section point; by fibre
+  std::array<V, 2 * A> strain;  ///< in: of the step before; out: of this one; by fibre, then by point across
 };
+
+/// Where a fibre is looked at across its direction at mid-thickness, in halves of the element: in the middle,
+/// or at two Gauss points. One point leaves the mode free in which opposite edges stretch and shorten.
+template <int A>
+struct AcrossRule;
+template <>
+struct AcrossRule<1> {
+  static constexpr std::array<double, 1> place{0.0};
+};
+template <>
+struct AcrossRule<2> {
+  static constexpr std::array<double, 2> place{0.57735026918962576, -0.57735026918962576};
+};
+
+/// Slot of a fibre's strain in the law: 3 per section point, and behind them those of further points across.
+template <int N>
+constexpr size_t fibre_slot(size_t section_point, size_t fibre, size_t across) {
+  return across == 0 ? 3 * section_point + fibre : 3 * size_t(N) + fibre;
+}
 
 /// Forces that the element exerts on its corners: on positions [N] and on directors [N m].
 /// @param law  stresses at section points, like StaticLaw.
-template <int N, class V, class Law>
+template <int N, int A, class V, class Law>
 void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, Law& law,
-                  FibreViscosity<V>& viscosity, const Corners<V>& x, const Corners<V>& d, Corners<V>& force,
-                  Corners<V>& moment) {
+                  FibreViscosity<V, A>& viscosity, const Corners<V>& x, const Corners<V>& d,
+                  Corners<V>& force, Corners<V>& moment) {
   using std::sqrt;
   const ElementMotion<V> m = element_motion(g, x, d);
   const V zero(0.0), one(1.0);
-  Vec3<V> n1{zero, zero, zero}, n2 = n1, m1 = n1, m2 = n1;
+  Vec3<V> n1{zero, zero, zero}, n2 = n1, m1 = n1, m2 = n1, across = n1;
 
   for (size_t k = 0; k < size_t(N); ++k) {
     const V s(SectionRule<N>::place[k] * material.thickness),
@@ -198,22 +217,44 @@ void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, L
     const V length1 = sqrt(dot(f1, f1)), length2 = sqrt(dot(f2, f2));
     const V inverse1 = one / length1, inverse2 = one / length2;
     const V sine = dot(f1, f2) * inverse1 * inverse2;
-    const V e1 = length1 - one, e2 = length2 - one;
-    V t1 = law.fibre(e1, 3 * k), t2 = law.fibre(e2, 3 * k + 1);
     const V shear = law.shear(sine, 3 * k + 2);
-    if (2 * k + 1 == size_t(N)) {  // the middle one
-      t1 += viscosity.modulus1 * (e1 - viscosity.strain1);
-      t2 += viscosity.modulus2 * (e2 - viscosity.strain2);
-      viscosity.strain1 = e1;
-      viscosity.strain2 = e2;
-    }
     const V both = w * shear * inverse1 * inverse2;
+    const bool middle = 2 * k + 1 == size_t(N);
+    V t1 = zero, t2 = zero;
+    if (!middle || A == 1) {
+      const V e1 = length1 - one, e2 = length2 - one;
+      t1 = law.fibre(e1, 3 * k);
+      t2 = law.fibre(e2, 3 * k + 1);
+      if (middle) {
+        t1 += viscosity.modulus[0] * (e1 - viscosity.strain[0]);
+        t2 += viscosity.modulus[1] * (e2 - viscosity.strain[1]);
+        viscosity.strain[0] = e1;
+        viscosity.strain[1] = e2;
+      }
+    }
     const Vec3<V> p1 = (w * (t1 - shear * sine * inverse1) * inverse1) * f1 + both * f2;
     const Vec3<V> p2 = (w * (t2 - shear * sine * inverse2) * inverse2) * f2 + both * f1;
     n1 = n1 + p1;
     n2 = n2 + p2;
     m1 = m1 + s * p1;
     m2 = m2 + s * p2;
+    if (middle && A == 2) {
+      for (size_t fibre = 0; fibre < 2; ++fibre) {
+        const Vec3<V>& along = fibre == 0 ? m.a1 : m.a2;
+        const V quarter = V(0.25) / (fibre == 0 ? g.half1 : g.half2);
+        for (size_t a = 0; a < size_t(A); ++a) {
+          const V place = V(AcrossRule<A>::place[a]) * quarter;
+          const Vec3<V> f = along + place * m.hx;
+          const V length = sqrt(dot(f, f)), e = length - one;
+          V& before = viscosity.strain[2 * a + fibre];
+          const V stress = law.fibre(e, fibre_slot<N>(k, fibre, a)) + viscosity.modulus[fibre] * (e - before);
+          before = e;
+          const Vec3<V> p = (V(1.0 / A) * w * stress / length) * f;
+          (fibre == 0 ? n1 : n2) = (fibre == 0 ? n1 : n2) + p;
+          across = across + place * p;
+        }
+      }
+    }
   }
 
   const TransverseShear<V> q = transverse_shear(g, m, V(material.transverse));
@@ -225,7 +266,8 @@ void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, L
   const HourglassStiffness<V> h = hourglass_stiffness(g, material);
   const Vec3<V> on_mean =
       g.area * (q.on_s1 * m.a1 + q.on_s2 * m.a2 + q.on_warp * m.hx) - (h.membrane * warp) * m.hx;
-  const Vec3<V> on_hx = (g.area * q.on_warp - h.membrane * warp) * m.mean + h.membrane * m.hx;
+  const Vec3<V> on_hx =
+      g.area * across + (g.area * q.on_warp - h.membrane * warp) * m.mean + h.membrane * m.hx;
   const Vec3<V> on_hd = h.director * m.hd;
 
   // From derivatives back to corners; a force is minus the energy's derivative.
@@ -247,7 +289,7 @@ struct ElementEnergy {
   double fabric = 0, hourglass = 0;
 };
 
-template <int N>
+template <int N, int A>
 ElementEnergy shell_energy(const ElementGeometry<double>& g, const KernelMaterial& material,
                            const Corners<double>& x, const Corners<double>& d) {
   const ElementMotion<double> m = element_motion(g, x, d);
@@ -258,8 +300,18 @@ ElementEnergy shell_energy(const ElementGeometry<double>& g, const KernelMateria
     const Vec3<double> f1 = m.a1 + s * m.c1, f2 = m.a2 + s * m.c2;
     const double length1 = std::sqrt(dot(f1, f1)), length2 = std::sqrt(dot(f2, f2));
     const double sine = dot(f1, f2) / (length1 * length2);
-    density += w * (material.fibre.integral(length1 - 1) + material.fibre.integral(length2 - 1) +
-                    material.shear.integral(sine));
+    density += w * material.shear.integral(sine);
+    if (2 * k + 1 != size_t(N) || A == 1) {
+      density += w * (material.fibre.integral(length1 - 1) + material.fibre.integral(length2 - 1));
+      continue;
+    }
+    for (const double place : AcrossRule<A>::place) {
+      const Vec3<double> g1 = m.a1 + (place * 0.25 / g.half1) * m.hx,
+                         g2 = m.a2 + (place * 0.25 / g.half2) * m.hx;
+      density += w / A *
+                 (material.fibre.integral(std::sqrt(dot(g1, g1)) - 1) +
+                  material.fibre.integral(std::sqrt(dot(g2, g2)) - 1));
+    }
   }
   const double warp = dot(m.hx, m.mean);
   const HourglassStiffness<double> h = hourglass_stiffness(g, material);

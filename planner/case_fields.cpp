@@ -316,6 +316,9 @@ void visit_fem(FieldVisitor& v, FemOptions& f) {
            "Through the thickness",
            Dimension::none,
            {1, 5, false, false, true}});
+  v.field({"fibre_points", &f.fibre_points,
+           "Across each fibre at mid-thickness; with 1 only hourglass control keeps opposite edges alike",
+           Dimension::none, from(1, 2)});
   v.field({"mass_scaling", &f.mass_scaling, "Factor on the mass; gravity acts on the unscaled mass",
            Dimension::none, from(1, 1e6)});
   v.field({"target_step", &f.target_step, "Mass is added to nodes where the step would be smaller; 0: none",

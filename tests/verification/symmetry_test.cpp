@@ -22,7 +22,8 @@ struct Change {
   double angle = 0;  ///< [rad]
   Vector3d shift{0, 0, 0};
   bool mirrored = false;
-  bool renumbered = false;  ///< nodes and elements in reversed order
+  bool renumbered = false;    ///< nodes and elements in reversed order
+  bool other_corner = false;  ///< elements start at their next corner: their own directions are turned
 
   [[nodiscard]] Eigen::Matrix2d plane() const {
     Eigen::Matrix2d to = Eigen::Rotation2Dd(angle).toRotationMatrix();
@@ -43,6 +44,7 @@ struct Change {
 
 const std::vector<Change> kChanges{
     {.name = "renumbered", .renumbered = true},
+    {.name = "from another corner", .other_corner = true},
     {.name = "turned", .angle = 0.7},
     {.name = "shifted in x and y", .shift = {0.31, -0.17, 0}},
     {.name = "shifted in z", .shift = {0, 0, 0.213}},
@@ -56,6 +58,9 @@ Mesh changed(const Mesh& mesh, const Change& change) {
     // Counter-clockwise again, with the first side along the warp as before.
     for (auto& quad : out.quads) std::reverse(quad.begin(), quad.end());
     std::reverse(out.outline.begin(), out.outline.end());
+  }
+  if (change.other_corner) {
+    for (auto& quad : out.quads) std::rotate(quad.begin(), quad.begin() + 1, quad.end());
   }
   if (change.renumbered) {
     const int last = mesh.node_count() - 1;
