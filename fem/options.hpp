@@ -16,7 +16,8 @@ struct FemOptions {
   bool rates = true;         ///< false: slowest curves only, whatever tables the material has
   int fibre_points =
       2;  ///< across each fibre at mid-thickness: 1 or 2; with 1 only hourglass control is left
-  double hourglass = 0.01;  ///< hourglass stiffness over that of a bilinear element of fibre in compression
+  double hourglass = 0.005;  ///< in-plane hourglass stiffness over that of a bilinear element of fibre in
+                             ///< compression; directors have the full one
   /// Damping ratio along the fibres at the highest frequency. A fibre that is stiffer in tension than in
   /// compression is a spring with two stiffnesses, which central differences feed in narrow windows of the
   /// step from 0.4 of the stable one on. With a ratio of 0.1 and up to 0.95 of the stable step (which the

@@ -58,7 +58,8 @@ KernelMaterial kernel_material(const Fabric& fabric, const FemOptions& options) 
       Lookup([&](double e) { return fibre_stress(fabric, e, 0); }, grid.lower, grid.upper, grid.intervals);
   material.shear = Lookup([&](double sine) { return shear_stress(fabric, sine, 0); }, -kTabulatedSine,
                           kTabulatedSine, kShearIntervals);
-  material.hourglass_modulus = options.hourglass * fabric.compression.slowest().smallest_slope();
+  material.director_modulus = fabric.compression.slowest().smallest_slope();
+  material.hourglass_modulus = options.hourglass * material.director_modulus;
   return material;
 }
 

@@ -66,7 +66,8 @@ struct KernelMaterial {
   Lookup shear;  ///< tau / cos g over sin g [Pa]
   double thickness = 0;
   double transverse = 0;         ///< K G t [N/m]
-  double hourglass_modulus = 0;  ///< [Pa]
+  double hourglass_modulus = 0;  ///< in-plane [Pa]
+  double director_modulus = 0;   ///< of directors [Pa]
 };
 
 /// The law of a fabric that does not depend on rates.
@@ -123,7 +124,7 @@ template <class V>
 HourglassStiffness<V> hourglass_stiffness(const ElementGeometry<V>& g, const KernelMaterial& material) {
   const V shape = g.area * (V(1.0) / (g.half1 * g.half1) + V(1.0) / (g.half2 * g.half2)) * V(1.0 / 96);
   const double t = material.thickness;
-  return {V(material.hourglass_modulus * t) * shape, V(material.hourglass_modulus * t * t * t / 12) * shape};
+  return {V(material.hourglass_modulus * t) * shape, V(material.director_modulus * t * t * t / 12) * shape};
 }
 
 /// Transverse shear of an element: its energy per rest area, and the derivatives of that by its arguments.

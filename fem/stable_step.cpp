@@ -10,6 +10,8 @@ namespace {
 constexpr int kLanczosSteps = 60;      // largest eigenvalue of a mesh's spectrum to 0.1 %
 constexpr double kProbeLength = 1e-9;  // [m] of a node: strains far below a piece of the tables
 
+constexpr double kOffTheKink = 3e-5;  // strain, less than the look-ahead of Lookup
+
 /// Displacements and director changes of all nodes, in mass-weighted coordinates.
 using Modes = Eigen::VectorXd;
 
@@ -48,6 +50,12 @@ class Tangent {
       trial_.d.x[k] += turn.x(), trial_.d.y[k] += turn.y(), trial_.d.z[k] += turn.z();
     }
     compute_forces(model_, trial_, work_);
+    // At a kink of the law the stiffer side counts: fibres are looked at a little longer than they are.
+    for (auto* part : {&trial_.x.x, &trial_.x.y, &trial_.x.z}) {
+      for (double& place : *part) place *= 1 + kOffTheKink;
+    }
+    trial_.history = state_.history;  // as it was before the forces
+    model_.terms().front()->forces(trial_, work_.entries.data());
     Modes out = Modes::Zero(size());
     for (const Forces& entry : work_.entries) {
       for (Eigen::Index n = 0; n < nodes_; ++n) {
