@@ -75,7 +75,8 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   own_mass_.resize(n);
   // Mass per stiffness below which the target step would be missed.
   const double rise = scene_.mold ? contact_rise(options) : 1;
-  const double needed = std::pow(rise * options.target_step / (2 * options.step_safety), 2);
+  const double share = options.step_safety * viscous_share(options.bulk_viscosity);
+  const double needed = std::pow(rise * options.target_step / (2 * share), 2);
   for (size_t k = 0; k < n; ++k) {
     own_mass_[k] = std::max(options.mass_scaling * unscaled[k], needed * stiffness.translation[k]);
     mass_[k] = own_mass_[k];

@@ -17,9 +17,10 @@ using Eigen::Vector3d;
 // Layout [px].
 constexpr double kPanelSize = 360;  // longer side of the part that is seen
 constexpr double kPanelGap = 30;
-constexpr double kLeft = 58;          // for the ticks of the y axis
-constexpr double kTop = 58;           // for titles
-constexpr double kBottom = 118;       // for ticks, values and the legend
+constexpr double kLeft = 58;     // for the ticks of the y axis
+constexpr double kTop = 58;      // for titles
+constexpr double kBottom = 138;  // for ticks, values and two rows of the legend
+constexpr double kLegendRow = 22;
 constexpr double kColourBar = 104;    // with its ticks and its title
 constexpr double kRingDistance = 15;  // between circles on the prescribed boundary
 constexpr double kFarAway = 1e5;      // no coordinate is larger than that
@@ -287,27 +288,28 @@ void draw_colour_bar(Svg& svg, const Vector2d& corner, double height, const Band
            {.size = 12, .anchor = Svg::Anchor::middle, .turn = -90});
 }
 
-void draw_legend(Svg& svg, Vector2d at, const std::vector<DrapePanel>& panels) {
+/// Entries in a row from `at` on; a new row where one would pass `right`.
+void draw_legend(Svg& svg, Vector2d at, double right, const std::vector<DrapePanel>& panels) {
+  const double left = at.x();
   const auto any = [&](auto has) { return std::any_of(panels.begin(), panels.end(), has); };
-  const auto entry = [&](const std::string& text, double width) {
+  const auto entry = [&](const std::string& text, double width, const auto& draw_symbol) {
+    if (at.x() + width > right) at = {left, at.y() + kLegendRow};
+    draw_symbol();
     svg.text(at + Vector2d(30, 4), text, {.size = 12, .colour = ink::kSoft});
     at.x() += width;
   };
-  if (any([](const DrapePanel& p) { return p.boundary.size() > 1; })) {
-    draw_boundary(svg, {at, at + Vector2d(24, 0)});
-    entry("prescribed boundary", 164);
-  }
-  svg.line(at, at + Vector2d(24, 0), {.stroke = ink::kText, .width = 1.2});
-  entry("ply edge", 98);
-  draw_cross(svg, at + Vector2d(16, 0));
-  entry("largest gap", 116);
+  if (any([](const DrapePanel& p) { return p.boundary.size() > 1; }))
+    entry("prescribed boundary", 164, [&] { draw_boundary(svg, {at, at + Vector2d(24, 0)}); });
+  entry("ply edge", 98, [&] { svg.line(at, at + Vector2d(24, 0), {.stroke = ink::kText, .width = 1.2}); });
+  entry("largest gap", 116, [&] { draw_cross(svg, at + Vector2d(16, 0)); });
   if (any([](const DrapePanel& p) { return p.largest_offset.has_value(); })) {
-    draw_measure(svg, at + Vector2d(4, 0), at + Vector2d(22, 0));
-    entry("largest boundary offset", 178);
+    entry("largest boundary offset", 178,
+          [&] { draw_measure(svg, at + Vector2d(4, 0), at + Vector2d(22, 0)); });
   }
   if (any([](const DrapePanel& p) { return !p.pads.empty(); })) {
-    svg.circle(at + Vector2d(14, 0), 8, {.stroke = ink::kText, .width = 0.8, .opacity = 0.55});
-    entry("gripper pad", 100);
+    entry("gripper pad", 100, [&] {
+      svg.circle(at + Vector2d(14, 0), 8, {.stroke = ink::kText, .width = 0.8, .opacity = 0.55});
+    });
   }
 }
 
@@ -326,7 +328,7 @@ std::string drape_picture(const std::vector<DrapePanel>& panels, const Extent& m
     draw_panel(svg, panels[k], corner, view, bands, mold_extent, k == 0);
   }
   draw_colour_bar(svg, {bar, kTop}, size.y(), bands);
-  draw_legend(svg, {kLeft, kTop + size.y() + kBottom - 22}, panels);
+  draw_legend(svg, {kLeft, kTop + size.y() + kBottom - 42}, bar + kColourBar, panels);
   return svg.finish();
 }
 

@@ -275,5 +275,20 @@ TEST(Rest, EndsARunThatHasComeToRestBeforeItsTime) {
   EXPECT_LE(apart, 1e-3 * drop);
 }
 
+TEST(StableStep, IsAtLeastTheTargetWhereMassIsAdded) {
+  Scene scene;
+  scene.mesh = rectangle_mesh(0.1, 0.05, 0.01);
+  scene.fabric = test::woven_fabric();
+  scene.options.mass_scaling = 1;
+  const double own = Model(scene).dt();
+  for (const double factor : {0.5, 1.0, 4.0}) {
+    scene.options.target_step = factor * own;
+    const Model model(scene);
+    EXPECT_NEAR(model.dt(), std::max(factor, 1.0) * own, 1e-12 * own);
+    const double mass = model.free_mass() / (0.314 * 0.1 * 0.05);  // as much more as the step squared
+    EXPECT_NEAR(mass, std::max(factor * factor, 1.0), 0.1 * mass);
+  }
+}
+
 }  // namespace
 }  // namespace drapeplan
