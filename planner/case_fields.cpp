@@ -335,7 +335,8 @@ void visit_fem(FieldVisitor& v, FemOptions& f) {
            "Damping ratio along the fibres at the highest frequency; keeps fibres stable that are stiffer in "
            "tension than in compression",
            Dimension::none, from(0, 1)});
-  v.field({"hourglass", &f.hourglass, "In-plane hourglass stiffness over that of a bilinear element of fibre in compression",
+  v.field({"hourglass", &f.hourglass,
+           "In-plane hourglass stiffness over that of a bilinear element of fibre in compression",
            Dimension::none, from(0, 100)});
   v.field({"contact_stiffness", &f.contact_stiffness,
            "Contact stiffness of a free node over its membrane stiffness", Dimension::none, positive(100)});
