@@ -39,10 +39,4 @@ double StressTable::operator()(double strain, double rate, double floor) const {
   return (1 - share) * curves[k - 1](strain) + share * curves[k](strain);
 }
 
-double StressTable::largest_slope() const {
-  double largest = 0;
-  for (const Curve& curve : curves) largest = std::max(largest, curve.largest_slope());
-  return largest;
-}
-
 }  // namespace drapeplan

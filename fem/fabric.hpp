@@ -35,7 +35,6 @@ struct StressTable {
   [[nodiscard]] const Curve& slowest() const { return curves.front(); }
   /// @param rate  of growth [1/s], >= 0;  @param floor  [1/s], > 0.
   [[nodiscard]] double operator()(double strain, double rate, double floor) const;
-  [[nodiscard]] double largest_slope() const;  ///< of all curves [Pa]
 };
 
 /// How the shear stress of the table is measured.

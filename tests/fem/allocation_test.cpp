@@ -8,8 +8,7 @@
 #include "fem/monitor.hpp"
 #include "fem/simulate.hpp"
 #include "fem/stable_step.hpp"
-#include "tests/fem/scenes.hpp"
-#include "tests/mapping/molds.hpp"
+#include "tests/fem/drapes.hpp"
 
 namespace {
 
@@ -67,27 +66,13 @@ namespace {
 
 /// Everything at once: rig with interlinks and rotation limits, contact, friction, rates, loads, releases.
 Scene full_scene() {
-  Scene scene;
-  RigOptions rig;
-  rig.columns = rig.rows = 2;
-  rig.spacing = 0.12;
-  rig.joint_offset = 0.005;
-  rig.rotation_limits = RotationLimits{{-0.1, 0.1}, {-0.1, 0.1}};
-  rig.fixed = {1, 1};
-  scene.rig = rig;
-  scene.mesh = rectangle_mesh(0.16, 0.16, 0.02, column_places(rig), row_places(rig));
-  scene.fabric = test::woven_fabric();
+  Scene scene = test::corner_drape(0.02);
+  scene.rig->rotation_limits = RotationLimits{{-0.1, 0.1}, {-0.1, 0.1}};
+  scene.rig->fixed = {1, 1};
   Curve fast = scene.fabric.compression.slowest();
   for (double& stress : fast.stress) stress *= 2;
   scene.fabric.compression.curves.push_back(fast);
   scene.fabric.compression.rates = {1e-15, 1e-3};
-  scene.options.mass_scaling = 50;
-  scene.options.time_scaling = 20;
-  scene.position = {0.1, 0.1};
-  scene.gravity = 9.81;
-  scene.damping = 22;
-  scene.mold = seed_mold();
-  scene.friction = 1.5;
   scene.loads = Loads{.pressure = {0, 0, -0.1}};
   scene.rest = RestCriterion{.speed = 1e-12};
   return scene;
@@ -95,16 +80,7 @@ Scene full_scene() {
 
 /// Down onto the mold within 4 s, then held; one pad lets go at 4.2 s.
 Schedule drop(const Scene& scene) {
-  Schedule schedule;
-  schedule.blend_time = 0.1;
-  double top = -1;
-  std::vector<double> z;
-  for (int g = 0; g < scene.rig->count(); ++g) {
-    const Eigen::Vector2d xy = scene.position + scene.rig->place(g);
-    z.push_back(scene.mold->height(xy.x(), xy.y()) + scene.rig->joint_offset);
-    top = std::max(top, z.back());
-  }
-  for (const double end : z) schedule.paths.push_back({{0, top + 0.02}, {2, end + 0.02}, {4, end}, {5, end}});
+  Schedule schedule = test::drop(scene, {.above = 2, .touch = 4, .end = 5});
   schedule.release = {std::nullopt, std::nullopt, std::nullopt, 4.2};
   return schedule;
 }

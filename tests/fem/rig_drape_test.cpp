@@ -6,8 +6,7 @@
 
 #include "fem/simulate.hpp"
 #include "fem/workspace.hpp"
-#include "tests/fem/scenes.hpp"
-#include "tests/mapping/molds.hpp"
+#include "tests/fem/drapes.hpp"
 
 namespace drapeplan {
 namespace {
@@ -17,40 +16,8 @@ using test::get;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// A 2x2 rig over the lower left corner of the seed's mold, coarse and fast; driven in z, with interlinks.
 Scene corner_drape() {
-  Scene scene;
-  RigOptions rig;
-  rig.columns = rig.rows = 2;
-  rig.spacing = 0.12;
-  rig.joint_offset = 0.005;
-  scene.rig = rig;
-  scene.mesh = rectangle_mesh(0.16, 0.16, 0.0125, column_places(rig), row_places(rig));
-  scene.fabric = test::woven_fabric();
-  scene.options.mass_scaling = 50;
-  scene.options.time_scaling = 20;
-  scene.position = {0.1, 0.1};
-  scene.gravity = 9.81;
-  scene.damping = 22;
-  scene.mold = seed_mold();
-  scene.friction = 1.5;
-  return scene;
-}
-
-/// Down to `depth` below the mold's height at the joints' places, from 20 mm above the highest of them.
-Schedule drop(const Scene& scene, double depth = 0) {
-  Schedule schedule;
-  schedule.blend_time = 0.1;
-  double top = -1;
-  std::vector<double> z;
-  for (int g = 0; g < scene.rig->count(); ++g) {
-    const Eigen::Vector2d xy = scene.position + scene.rig->place(g);
-    z.push_back(scene.mold->height(xy.x(), xy.y()) + scene.rig->joint_offset);
-    top = std::max(top, z.back());
-  }
-  for (const double end : z)
-    schedule.paths.push_back({{0, top + 0.02}, {2, end + 0.02}, {5, end - depth}, {6, end - depth}});
-  return schedule;
+  return test::corner_drape(0.0125);
 }
 
 Vector3d normal_of(const Snapshot& frame, size_t pad, const RigOptions& rig) {
@@ -61,7 +28,7 @@ TEST(RigDrape, KeepsPadsWithinTheirTiltLimitWhereActuatorsPressThemOntoAMoldStee
   Scene scene = corner_drape();
   scene.rig->interlinks = false;
   scene.rig->tilt_limit = 12 * kDegree;
-  const Schedule schedule = drop(scene, 0.02);  // 20 mm into the mold: full force
+  const Schedule schedule = test::drop(scene, {.depth = 0.02});  // 20 mm into the mold: full force
   double largest = 0;
   const RunResult result = simulate(
       Model(scene), {.schedule = &schedule, .duration = 0, .frames = 400, .observe = [&](const auto& f) {
@@ -79,7 +46,7 @@ TEST(RigDrape, KeepsPadsWithinTheirTiltLimitWhereActuatorsPressThemOntoAMoldStee
 TEST(RigDrape, KeepsRotationLimitsAgainstInterlinks) {
   Scene scene = corner_drape();
   scene.rig->rotation_limits = RotationLimits{{-6 * kDegree, 4 * kDegree}, {-5 * kDegree, 3 * kDegree}};
-  const Schedule schedule = drop(scene);
+  const Schedule schedule = test::drop(scene);
   double excess = -1;
   const RunResult result = simulate(
       Model(scene), {.schedule = &schedule, .duration = 0, .frames = 400, .observe = [&](const auto& f) {
@@ -131,7 +98,7 @@ TEST(RigDrape, MovesJointsInPlaneWhereTheScheduleSaysSo) {
 // The ply falls from moving grippers: two of them let go, the others follow later or never.
 TEST(RigDrape, ClosesItsBooksThroughReleasesInMotion) {
   Scene scene = corner_drape();
-  Schedule schedule = drop(scene);
+  Schedule schedule = test::drop(scene);
   schedule.release = {1.0, std::nullopt, 1.5, 5.5};
   const Model model(scene);
   const RunResult result = simulate(model, {.schedule = &schedule});

@@ -4,52 +4,20 @@
 #include <gtest/gtest.h>
 
 #include "fem/workspace.hpp"
-#include "tests/fem/scenes.hpp"
-#include "tests/mapping/molds.hpp"
+#include "tests/fem/drapes.hpp"
 
 namespace drapeplan {
 namespace {
 
 using test::get;
 
-/// 3x3 rig on the middle of the seed's mold, coarse and fast.
 Scene small_drape() {
-  Scene scene;
-  RigOptions rig;
-  rig.columns = rig.rows = 3;
-  rig.spacing = 0.1;
-  rig.fixed = {2, 2};
-  rig.joint_offset = 0.002;
-  scene.rig = rig;
-  scene.mesh = rectangle_mesh(0.22, 0.22, 0.0125, column_places(rig), row_places(rig));
-  scene.fabric = test::woven_fabric();
-  scene.options.mass_scaling = 50;
-  scene.options.time_scaling = 20;
-  scene.position = {0.225, 0.225};
-  scene.gravity = 9.81;
-  scene.damping = 22;
-  scene.mold = seed_mold();
-  scene.friction = 1.5;
-  return scene;
-}
-
-Schedule drop(const Scene& scene) {
-  Schedule schedule;
-  schedule.blend_time = 0.1;
-  double top = -1;
-  std::vector<double> z;
-  for (int g = 0; g < scene.rig->count(); ++g) {
-    const Eigen::Vector2d xy = scene.position + scene.rig->place(g);
-    z.push_back(scene.mold->height(xy.x(), xy.y()) + scene.rig->joint_offset);
-    top = std::max(top, z.back());
-  }
-  for (const double end : z) schedule.paths.push_back({{0, top + 0.02}, {2, end + 0.02}, {5, end}, {6, end}});
-  return schedule;
+  return test::middle_drape(0.22, 0.0125);
 }
 
 TEST(Simulate, ClosesItsBooksToRoundOffInADrape) {
   const Scene scene = small_drape();
-  const Schedule schedule = drop(scene);
+  const Schedule schedule = test::drop(scene);
   const RunResult result = simulate(Model(scene), {.schedule = &schedule});
   EXPECT_EQ(result.report.status, RunStatus::done) << result.report.message;
   EXPECT_LE(result.report.energy.balance_error, 1e-9);
@@ -62,7 +30,7 @@ TEST(Simulate, ClosesItsBooksToRoundOffInADrape) {
 
 TEST(Simulate, GivesTheSameBitsTwice) {
   const Scene scene = small_drape();
-  const Schedule schedule = drop(scene);
+  const Schedule schedule = test::drop(scene);
   const Model model(scene);
   const auto first = simulate(model, {.schedule = &schedule}).report.state_hash;
   EXPECT_EQ(first, simulate(model, {.schedule = &schedule}).report.state_hash);
@@ -72,7 +40,7 @@ TEST(Simulate, GivesTheSameBitsTwice) {
 TEST(Simulate, ReportsDivergenceAsAResultWithItsPlace) {
   Scene scene = small_drape();
   scene.options.step_safety = 4;
-  const Schedule schedule = drop(scene);
+  const Schedule schedule = test::drop(scene);
   const RunResult result = simulate(Model(scene), {.schedule = &schedule});
   EXPECT_EQ(result.report.status, RunStatus::diverged);
   EXPECT_NE(result.report.message.find("not finite"), std::string::npos) << result.report.message;
@@ -90,7 +58,7 @@ TEST(Simulate, ListsOnlyTheTermsThatTheSceneNeeds) {
 
 TEST(Simulate, RefusesAPadWithoutNodesAndAScheduleOfAnotherRig) {
   Scene scene = small_drape();
-  const Schedule schedule = drop(scene);
+  const Schedule schedule = test::drop(scene);
   scene.rig->columns = scene.rig->rows = 2;
   scene.rig->fixed.reset();
   const Model model(scene);

@@ -7,8 +7,7 @@
 #include <numbers>
 
 #include "fem/simulate.hpp"
-#include "tests/fem/scenes.hpp"
-#include "tests/mapping/molds.hpp"
+#include "tests/fem/drapes.hpp"
 
 namespace drapeplan {
 namespace {
@@ -162,43 +161,16 @@ TEST(StableStep, IsCloseForDistortedAndOutlineMeshes) {
 
 /// The 3 x 3 rig of the quick case with the woven law of the tests.
 Scene quick_drape() {
-  Scene scene;
-  RigOptions rig;
-  rig.columns = rig.rows = 3;
-  rig.spacing = 0.1;
-  rig.fixed = {2, 2};
-  rig.joint_offset = 0.002;
-  scene.rig = rig;
-  scene.mesh = rectangle_mesh(0.205, 0.205, 0.017, column_places(rig), row_places(rig));
-  scene.fabric = test::woven_fabric();
+  Scene scene = test::middle_drape(0.205, 0.017);
   scene.options.mass_scaling = 60;
   scene.options.time_scaling = 16;
-  scene.position = {0.225, 0.225};
-  scene.gravity = 9.81;
-  scene.damping = 22;
-  scene.mold = seed_mold();
-  scene.friction = 1.5;
   return scene;
-}
-
-Schedule drop(const Scene& scene) {
-  Schedule schedule;
-  schedule.blend_time = 0.1;
-  double top = -1;
-  std::vector<double> z;
-  for (int g = 0; g < scene.rig->count(); ++g) {
-    const Eigen::Vector2d xy = scene.position + scene.rig->place(g);
-    z.push_back(scene.mold->height(xy.x(), xy.y()) + scene.rig->joint_offset);
-    top = std::max(top, z.back());
-  }
-  for (const double end : z) schedule.paths.push_back({{0, top + 0.03}, {3, end + 0.03}, {6, end}, {7, end}});
-  return schedule;
 }
 
 TEST(StableStep, IsCloseThroughoutADrape) {
   const Scene scene = quick_drape();
   const Model model(scene);
-  const Schedule schedule = drop(scene);
+  const Schedule schedule = test::drop(scene, {.above = 3, .touch = 6, .end = 7, .clearance = 0.03});
   for (const double pause : {1e-3, 3.5, 0.0}) {
     const RunResult run = simulate(model, {.schedule = &schedule, .pause = pause});
     ASSERT_NE(run.report.status, RunStatus::diverged) << run.report.message;

@@ -8,8 +8,7 @@
 #include <iterator>
 
 #include "fem/simulate.hpp"
-#include "tests/fem/scenes.hpp"
-#include "tests/mapping/molds.hpp"
+#include "tests/fem/drapes.hpp"
 
 namespace drapeplan {
 namespace {
@@ -57,35 +56,13 @@ Scene strip() {
 
 /// A 2x2 rig with interlinks over the corner of the seed's mold, with friction and rates; one pad lets go.
 Scene drape() {
-  Scene scene;
-  RigOptions rig;
-  rig.columns = rig.rows = 2;
-  rig.spacing = 0.12;
-  rig.joint_offset = 0.005;
-  scene.rig = rig;
-  scene.mesh = rectangle_mesh(0.16, 0.16, 0.02, column_places(rig), row_places(rig));
+  Scene scene = test::corner_drape(0.02);
   scene.fabric = rated_fabric();
-  scene.options.mass_scaling = 50;
-  scene.options.time_scaling = 20;
-  scene.position = {0.1, 0.1};
-  scene.gravity = 9.81;
-  scene.damping = 22;
-  scene.mold = seed_mold();
-  scene.friction = 1.5;
   return scene;
 }
 
 Schedule drop(const Scene& scene) {
-  Schedule schedule;
-  schedule.blend_time = 0.1;
-  double top = -1;
-  std::vector<double> z;
-  for (int g = 0; g < scene.rig->count(); ++g) {
-    const Eigen::Vector2d xy = scene.position + scene.rig->place(g);
-    z.push_back(scene.mold->height(xy.x(), xy.y()) + scene.rig->joint_offset);
-    top = std::max(top, z.back());
-  }
-  for (const double end : z) schedule.paths.push_back({{0, top + 0.02}, {2, end + 0.02}, {4, end}, {5, end}});
+  Schedule schedule = test::drop(scene, {.above = 2, .touch = 4, .end = 5});
   schedule.release = {std::nullopt, std::nullopt, std::nullopt, 4.2};
   return schedule;
 }

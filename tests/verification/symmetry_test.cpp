@@ -7,8 +7,7 @@
 #include <cstdio>
 
 #include "fem/simulate.hpp"
-#include "tests/fem/scenes.hpp"
-#include "tests/mapping/molds.hpp"
+#include "tests/fem/drapes.hpp"
 
 namespace drapeplan {
 namespace {
@@ -215,29 +214,11 @@ TEST(Symmetry, ASheetOfAWovenLawTouchesDownOnADomeTheSame) {
 
 /// A 3x3 rig with interlinks over the seed's mold, coarse and fast.
 Scene rig_scene() {
-  Scene scene;
-  RigOptions rig;
-  rig.columns = rig.rows = 3;
-  rig.spacing = 0.1;
-  rig.fixed = {2, 3};
-  rig.joint_offset = 0.002;
-  scene.rig = rig;
-  scene.mesh = rectangle_mesh(0.205, 0.205, 0.02, column_places(rig), row_places(rig));
-  scene.fabric = test::woven_fabric();
+  Scene scene = test::middle_drape(0.205, 0.02);
+  scene.rig->fixed = {2, 3};
   scene.options.mass_scaling = 80;
   scene.options.time_scaling = 10;
-  scene.position = {0.225, 0.225};
-  scene.gravity = 9.81;
-  scene.damping = 22;
-  scene.mold = seed_mold();
-  scene.friction = 1.5;
   return scene;
-}
-
-/// Height of a joint whose pad lies on the mold.
-double joint_on_mold(const Scene& scene, int gripper) {
-  const Vector2d xy = scene.position + scene.rig->place(gripper);
-  return scene.mold->height(xy.x(), xy.y()) + scene.rig->joint_offset;
 }
 
 /// Down to 30 mm above the mold, then gripper by gripper onto it.
@@ -245,9 +226,9 @@ Schedule one_after_the_other(const Scene& scene) {
   Schedule schedule;
   schedule.blend_time = scene.rig->blend_time;
   double top = -1;
-  for (int g = 0; g < scene.rig->count(); ++g) top = std::max(top, joint_on_mold(scene, g));
+  for (int g = 0; g < scene.rig->count(); ++g) top = std::max(top, test::joint_on_mold(scene, g));
   for (int g = 0; g < scene.rig->count(); ++g) {
-    const double end = joint_on_mold(scene, g), start = 4 + 0.25 * g;
+    const double end = test::joint_on_mold(scene, g), start = 4 + 0.25 * g;
     schedule.paths.push_back(
         {{0, top + 0.03}, {4, end + 0.03}, {start, end + 0.03}, {start + 2.5, end}, {8, end}});
     if (g == 0) schedule.paths.back().erase(schedule.paths.back().begin() + 2);  // its start is at 4 as well
