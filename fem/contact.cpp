@@ -44,11 +44,12 @@ struct Feet {
 template <bool kFriction>
 class ContactTerm final : public Term {
  public:
-  ContactTerm(const Mold& mold, double friction, ContactSprings springs, double surface)
+  ContactTerm(const Mold& mold, double friction, ContactSprings springs, double surface, int look_ahead)
       : mold_(mold),
         friction_(friction),
         springs_(std::move(springs)),
         surface_(surface),
+        look_ahead_(look_ahead),
         count_(int(springs_.stiffness.size())) {
     springs_.stiffness.resize(padded(count_), 1.0);
     springs_.damping.resize(padded(count_), 0.0);
@@ -65,7 +66,23 @@ class ContactTerm final : public Term {
   }
 
   void add_stiffness(NodalStiffness& stiffness) const override {
-    for (size_t n = 0; n < size_t(count_); ++n) stiffness.translation[n] += springs_.row[n];
+    for (size_t n = 0; n < size_t(count_); ++n) add_node(n, stiffness);
+  }
+
+  /// Nodes that touch, or would in `look_ahead` steps at twice their speed.
+  void add_tangent(const State& state, NodalStiffness& stiffness) const override {
+    double z[kChunk], zx[kChunk], zy[kChunk];
+    for (int first = 0; first < count_; first += kChunk) {
+      const int chunk = std::min(kChunk, int(padded(count_)) - first);
+      mold_.heights(chunk, &state.x.x[size_t(first)], &state.x.y[size_t(first)], z, zx, zy);
+      for (int k = 0; k < chunk && first + k < count_; ++k) {
+        const auto n = size_t(first + k);
+        const double speed = std::hypot(state.v.x[n], state.v.y[n], state.v.z[n]);
+        const double reach = (1 + kNear) * surface_ + 2 * look_ahead_ * state.dt * speed;
+        const double distance = (state.x.z[n] - z[k]) / std::sqrt(1 + zx[k] * zx[k] + zy[k] * zy[k]);
+        if (distance < reach) add_node(n, stiffness);  // false where the mold is not defined
+      }
+    }
   }
 
   void forces(State& state, Forces* entries) const override {
@@ -84,6 +101,11 @@ class ContactTerm final : public Term {
   }
 
  private:
+  void add_node(size_t n, NodalStiffness& stiffness) const {
+    stiffness.translation[n] += springs_.stiffness[n];
+    stiffness.damping[n] += springs_.damping[n];
+  }
+
   /// Places where the normals of the tangent planes at the vertical feet come from: one step towards the
   /// closest points. False if no node of the chunk is near the mold.
   bool find_feet(const State& state, size_t first, int chunk, Feet& feet) const {
@@ -156,6 +178,7 @@ class ContactTerm final : public Term {
   double friction_;
   ContactSprings springs_;
   double surface_;
+  int look_ahead_;
   int count_;
 };
 
@@ -176,9 +199,10 @@ class GravityTerm final : public Term {
 }  // namespace
 
 std::unique_ptr<Term> make_contact(const Mold& mold, std::optional<double> friction, ContactSprings springs,
-                                   double surface) {
-  if (friction) return std::make_unique<ContactTerm<true>>(mold, *friction, std::move(springs), surface);
-  return std::make_unique<ContactTerm<false>>(mold, 0.0, std::move(springs), surface);
+                                   double surface, int look_ahead) {
+  if (friction)
+    return std::make_unique<ContactTerm<true>>(mold, *friction, std::move(springs), surface, look_ahead);
+  return std::make_unique<ContactTerm<false>>(mold, 0.0, std::move(springs), surface, look_ahead);
 }
 
 std::unique_ptr<Term> make_gravity(const std::vector<double>& mass, double acceleration) {

@@ -14,7 +14,6 @@ namespace drapeplan {
 struct ContactSprings {
   std::vector<double> stiffness;  ///< [N/m]
   std::vector<double> damping;    ///< [N s/m]
-  std::vector<double> row;        ///< what both together count in the bound of the step [N/m]
 };
 
 /// Node-to-mold contact: springs with dashpots. The gap is the distance to the tangent plane at the foot of
@@ -25,8 +24,9 @@ struct ContactSprings {
 /// where its path crossed the surface, so that friction acts at once: it sticks if it came in steeper than
 /// the friction angle. Exact stick, no creep; path dependent.
 /// @param surface  distance of the touching face from the nodes [m] (half the ply).
+/// @param look_ahead  steps for which a tangent must hold: it counts nodes that may touch in as many.
 std::unique_ptr<Term> make_contact(const Mold& mold, std::optional<double> friction, ContactSprings springs,
-                                   double surface);
+                                   double surface, int look_ahead = 0);
 
 /// Weight of the unscaled mass. @param mass  per node [kg];  @param acceleration  downwards [m/s^2].
 std::unique_ptr<Term> make_gravity(const std::vector<double>& mass, double acceleration);

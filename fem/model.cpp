@@ -33,9 +33,9 @@ void add_mold(Fnv1a& hash, const Mold& mold) {
   }
 }
 
-/// Largest frequency with contact over that without it. Played with the velocity of half a step before, a
-/// dashpot c counts like a spring 2 c / dt. With s = 2 / dt, spring a K of a node's row K and share z of its
-/// critical damping, s^2 = K / m (1 + a) + 2 z sqrt(a K / m) s; the larger root, over sqrt(K / m).
+/// Largest 2 / dt with contact over that without it: with spring a K of a node's row K and share z of its
+/// critical damping, s^2 = K / m (1 + a) + 2 z sqrt(a K / m) s (see stable_dt); the larger root, over
+/// sqrt(K / m).
 double contact_rise(const FemOptions& options) {
   const double damped = options.contact_damping * std::sqrt(options.contact_stiffness);
   return damped + std::sqrt(damped * damped + 1 + options.contact_stiffness);
@@ -110,6 +110,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
     }
     held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
   }
+  bear_held_nodes();
   if (scene_.mold) add_contact(stiffness);
   stable_dt_ = stable_dt(stiffness);
   if (rig_) {
@@ -129,39 +130,66 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   }
 }
 
-// Rows of a spring k with a dashpot c are k + c s_1, with s_1 = 2 / dt_1 of the stable step dt_1: see
-// contact_rise. A longer step than dt_1 only makes them safer, a shorter one needs them less.
+/// Held nodes bear any stiffness; tied ones with their share of their pad.
+void Model::bear_held_nodes() {
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  bearing_mass_ = own_mass_;
+  if (rig_) {
+    const std::vector<double> ratios = rig_->mass_ratios(mass_, inertia_);
+    for (size_t i = 0; i < ratios.size(); ++i) bearing_mass_[size_t(rig_->tied()[i])] *= ratios[i];
+  }
+  bearing_inertia_ = bearing_mass_;
+  for (size_t k = 0; k < own_mass_.size(); ++k) bearing_inertia_[k] *= gyration2_[k];
+  for (const int node : scene_.pinned) bearing_mass_[size_t(node)] = kAny;
+  for (const int node : scene_.clamped) bearing_mass_[size_t(node)] = bearing_inertia_[size_t(node)] = kAny;
+  for (const Grip& grip : scene_.grips) {
+    for (const int node : grip.nodes) bearing_mass_[size_t(node)] = bearing_inertia_[size_t(node)] = kAny;
+  }
+}
+
+// Springs are shares of the ply's stiffness by its slowest curves: rates would make them needlessly stiff.
 void Model::add_contact(NodalStiffness& stiffness) {
   const FemOptions& options = scene_.options;
   const size_t n = own_mass_.size();
-  const double highest = contact_rise(options) * 2 / stable_dt(stiffness);
-  ContactSprings springs{stiffness.translation, std::vector<double>(n), std::vector<double>(n)};
+  NodalStiffness slow(node_count());
+  shell_->add_slow_stiffness(slow);
+  const double highest = contact_rise(options) * 2 / stable_dt(slow);
+  ContactSprings springs{slow.translation, std::vector<double>(n)};
   for (double& k : springs.stiffness) k *= options.contact_stiffness;
-  if (rig_) {
-    const std::vector<double> ratios = rig_->mass_ratios(mass_, inertia_);
-    for (size_t i = 0; i < ratios.size(); ++i) {
-      const auto k = size_t(rig_->tied()[i]);
-      const double surplus = (ratios[i] - 1) * own_mass_[k];
-      springs.stiffness[k] = std::max(springs.stiffness[k], kPadShare * surplus * highest * highest);
-      own_mass_[k] += surplus;
-    }
+  for (const int node : rig_ ? rig_->tied() : std::vector<int>()) {
+    const auto k = size_t(node);
+    const double surplus = bearing_mass_[k] - own_mass_[k];
+    springs.stiffness[k] = std::max(springs.stiffness[k], kPadShare * surplus * highest * highest);
+    own_mass_[k] = bearing_mass_[k];
   }
-  for (size_t k = 0; k < n; ++k) {
+  for (size_t k = 0; k < n; ++k)
     springs.damping[k] = 2 * options.contact_damping * std::sqrt(springs.stiffness[k] * own_mass_[k]);
-    springs.row[k] = springs.stiffness[k] + springs.damping[k] * highest;
-  }
-  terms_.push_back(
-      make_contact(*scene_.mold, scene_.friction, std::move(springs), 0.5 * scene_.fabric.thickness));
+  terms_.push_back(make_contact(*scene_.mold, scene_.friction, std::move(springs),
+                                0.5 * scene_.fabric.thickness, options.step_interval));
   terms_.back()->add_stiffness(stiffness);
 }
 
-double Model::stable_dt(const NodalStiffness& stiffness) const {
-  double largest = 0;  // bound of the highest squared frequency
-  for (size_t k = 0; k < own_mass_.size(); ++k) {
-    const double bound = std::max(stiffness.translation[k], stiffness.rotation[k] / gyration2_[k]);
-    largest = std::max(largest, bound / own_mass_[k]);
+// Played with the velocity of half a step before, a dashpot c counts like a spring c s with s = 2 / dt: at a
+// node's limit s^2 = K / m + c / m s. A shorter step leaves more room than it takes.
+double Model::highest_rate(const NodalStiffness& stiffness) const {
+  double largest = 0;
+  for (size_t k = 0; k < bearing_mass_.size(); ++k) {
+    const double half = 0.5 * stiffness.damping[k] / bearing_mass_[k];
+    const double spring = stiffness.translation[k] / bearing_mass_[k];
+    const double turn = stiffness.rotation[k] / bearing_inertia_[k];
+    largest = std::max({largest, half + std::sqrt(half * half + spring), std::sqrt(turn)});
   }
-  return 2 / std::sqrt(largest) * viscous_share(scene_.options.bulk_viscosity);
+  return largest;
+}
+
+double Model::stable_dt(const NodalStiffness& stiffness) const {
+  return 2 / highest_rate(stiffness) * viscous_share(scene_.options.bulk_viscosity);
+}
+
+double Model::slack(const NodalStiffness& stiffness, size_t node, double rate) const {
+  const double moving = rate * (rate * bearing_mass_[node] - stiffness.damping[node]);
+  const double turning = rate * rate * bearing_inertia_[node];
+  return std::min(moving / stiffness.translation[node], turning / stiffness.rotation[node]);
 }
 
 double Model::free_mass() const {

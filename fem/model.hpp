@@ -60,6 +60,10 @@ class Model {
   /// Largest stable step for given stiffness bounds over the nodes' own masses [s]. Nodes that are tied or
   /// clamped count as well: what holds them only lowers frequencies.
   [[nodiscard]] double stable_dt(const NodalStiffness& stiffness) const;
+  /// 2 / the stable step without viscosity: a bound of the highest frequency, dashpots counted [1/s].
+  [[nodiscard]] double highest_rate(const NodalStiffness& stiffness) const;
+  /// By how much the stiffness of a node may grow until its own rate is `rate` [1/s].
+  [[nodiscard]] double slack(const NodalStiffness& stiffness, size_t node, double rate) const;
   /// Damping rate on the scaled mass [1/s]: with a mass s times larger, modes are sqrt(s) times slower, and
   /// so is what damps them critically. s: of the whole ply.
   [[nodiscard]] double alpha() const { return alpha_; }
@@ -82,6 +86,7 @@ class Model {
   [[nodiscard]] State flat_state(double height) const;
 
  private:
+  void bear_held_nodes();
   void add_contact(NodalStiffness& stiffness);
 
   Scene scene_;
@@ -89,6 +94,7 @@ class Model {
   const Shell* shell_ = nullptr;
   std::optional<GripperRig> rig_;
   std::vector<double> mass_, inertia_, inverse_mass_, inverse_inertia_;
+  std::vector<double> bearing_mass_, bearing_inertia_;  ///< what bears stiffness: held nodes' are infinite
   std::vector<double> own_mass_, gyration2_;  ///< of all nodes, held ones too [kg], [m^2]; a tied node's mass
                                               ///< is its share of its pad
   double stable_dt_ = 0, alpha_ = 0;

@@ -20,6 +20,18 @@ struct ShellEnergy {
 /// What observers may ask of the ply beyond the interface of a term.
 class Shell : public Term {
  public:
+  /// Like add_stiffness, with the steepest slopes of the slowest curves.
+  virtual void add_slow_stiffness(NodalStiffness& stiffness) const = 0;
+  /// The section's tangents at a state, for add_bounds: section_count() numbers.
+  virtual void look_at_sections(const State& state, std::vector<double>& sections) const = 0;
+  [[nodiscard]] virtual size_t section_count() const = 0;
+  /// Adds bounds of all elements with these sections. @param slack  of each node, at least 1: how much larger
+  /// a part of its elements' stiffness it can bear than others (see CornerShares).
+  virtual void add_bounds(const std::vector<double>& sections, const std::vector<double>& slack,
+                          NodalStiffness& stiffness) const = 0;
+  /// Moves the remembered strains by so much (beyond zero where they are smaller) that every fibre in
+  /// compression and every angle counts as growing: the stiffer side where a law tells growth from decline.
+  virtual void let_strains_grow(State& state, double by) const = 0;
   /// With rates: that of the slowest curves; the rest is taken, not stored.
   [[nodiscard]] virtual ShellEnergy stored_energy(const State& state) const = 0;
   /// Fills the element fields of a snapshot: shear angle and fibre strains at mid-thickness.

@@ -69,7 +69,7 @@ struct Clock {
 
 /// The step from the state's positions to the next: chosen anew every `step_interval` steps, and cut at the
 /// end of the run.
-void choose_step(const Model& model, const Clock& clock, State& state, NodalStiffness& scratch) {
+void choose_step(const Model& model, const Clock& clock, State& state, StepScratch& scratch) {
   const FemOptions& options = model.scene().options;
   if (options.step_interval == 0) {
     state.dt = model.dt();
@@ -119,7 +119,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
       request.observe(take_snapshot(model, state, drive));
       ++frame;
     }
-    choose_step(model, clock, state, work.stiffness);
+    choose_step(model, clock, state, work.step);
     compute_forces(model, state, work);
     kick_nodes(model, state, work);
     if (model.rig()) kick_pads(model, state, drive, work);

@@ -19,15 +19,17 @@ struct Forces {
 
 /// A diagonal that is nowhere below the stiffness of all terms: u.K u <= sum over nodes of translation |x|^2
 /// + rotation |d|^2. Bounds of terms add, and those of elements at their nodes; then no squared frequency is
-/// above the largest bound over mass (Fried's element bound, weighted per node).
+/// above the largest bound over mass (Fried's element bound, weighted per node). Dashpots likewise.
 struct NodalStiffness {
-  explicit NodalStiffness(int nodes) : translation(size_t(nodes), 0.0), rotation(size_t(nodes), 0.0) {}
+  explicit NodalStiffness(int nodes)
+      : translation(size_t(nodes), 0.0), rotation(size_t(nodes), 0.0), damping(size_t(nodes), 0.0) {}
   void clear() {
-    for (auto* list : {&translation, &rotation}) std::fill(list->begin(), list->end(), 0.0);
+    for (auto* list : {&translation, &rotation, &damping}) std::fill(list->begin(), list->end(), 0.0);
   }
 
   std::vector<double> translation;  ///< [N/m]
   std::vector<double> rotation;     ///< of directors [N m]
+  std::vector<double> damping;      ///< of velocities half a step before the force [N s/m]
 };
 
 /// A term is const after the model is built; candidates and threads share it. What changes lives in State,

@@ -18,8 +18,14 @@ void set(VectorField& field, size_t n, const Eigen::Vector3d& value) {
 
 }  // namespace
 
+StepScratch::StepScratch(const Model& model)
+    : others(model.node_count()),
+      sum(model.node_count()),
+      sections(model.shell().section_count()),
+      slack(size_t(model.node_count())) {}
+
 Workspace::Workspace(const Model& model)
-    : mean_v(model.node_count()), mean_w(model.node_count()), stiffness(model.node_count()) {
+    : mean_v(model.node_count()), mean_w(model.node_count()), step(model) {
   for (const auto& term : model.terms()) {
     first.push_back(entries.size());
     for (Forces& entry : term->entries()) entries.push_back(std::move(entry));

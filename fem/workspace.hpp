@@ -7,13 +7,22 @@
 
 namespace drapeplan {
 
+/// Of stable_step().
+struct StepScratch {
+  explicit StepScratch(const Model& model);
+
+  NodalStiffness others, sum;    ///< of all terms but the ply; of all
+  std::vector<double> sections;  ///< see Shell::look_at_sections
+  std::vector<double> slack;     ///< of nodes
+};
+
 struct Workspace {
   explicit Workspace(const Model& model);
 
   std::vector<Forces> entries;  ///< of all terms, in order
   std::vector<size_t> first;    ///< entry of each term
   VectorField mean_v, mean_w;   ///< means of the half-step velocities
-  NodalStiffness stiffness;     ///< of the tangent
+  StepScratch step;
   RigScratch rig;
 };
 

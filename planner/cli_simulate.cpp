@@ -58,7 +58,7 @@ PartOfRun part_of_run(const SimulateOptions& options, const Model& model) {
 void finish_run(const SimulateOptions& options, const Model& model, const RunResult& run, json& result) {
   if (!options.save.empty()) save_state(options.save, model, run.state);
   if (run.report.status == RunStatus::diverged) return;
-  NodalStiffness scratch(model.node_count());
+  StepScratch scratch(model);
   const double estimate = stable_step(model, run.state, scratch), limit = true_stable_step(model, run.state);
   result["stable_step"] = {
       {"estimate", finite(estimate)}, {"true", finite(limit)}, {"share", finite(estimate / limit)}};

@@ -131,7 +131,7 @@ TEST(Allocations, AreNoneInAStepOrALook) {
     const long before = allocations;
     for (int k = 0; k < 1000; ++k) {
       if (k % 32 == 0) {
-        state.stable_dt = stable_step(model, state, work.stiffness);
+        state.stable_dt = stable_step(model, state, work.step);
         state.dt = scene.options.step_safety * state.stable_dt;
       }
       compute_forces(model, state, work);

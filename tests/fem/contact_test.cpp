@@ -20,9 +20,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 struct Touch {
   explicit Touch(const Mold& mold, size_t count = 1, double damping = 0, std::optional<double> friction = {})
       : term(make_contact(mold, friction,
-                          {std::vector<double>(count, 1.0), std::vector<double>(count, damping),
-                           std::vector<double>(count)},
-                          kHalf)),
+                          {std::vector<double>(count, 1.0), std::vector<double>(count, damping)}, kHalf)),
         entries(term->entries()) {
     state.x = state.v = state.anchor = VectorField(int(count));
     state.stuck.assign(padded(int(count)), 0.0);

@@ -143,9 +143,9 @@ TEST(BiasExtension, FollowsTheKinematicsAndThePowerBalanceOfInextensibleFibres) 
 
 TEST(BiasExtension, FollowsThemWithCellsThatDoNotDivideTheSpecimen) {
   // The mesh takes the next smaller size that does, 10.6 mm. Up to 32 mm it stays within 1 %; at 40 mm and 37
-  // degrees the force is 1.7 % high, whatever the speed: fibres turn sharply between the zones, within one
-  // element.
-  expect_ideal(0.013, 0.04, 0.02);
+  // degrees the force is 1.7 % high (it trembles by 0.2 %), whatever the speed: fibres turn sharply between
+  // the zones, within one element.
+  expect_ideal(0.013, 0.03, 0.02);
 }
 
 /// A square of fabric in a hinged frame that has sheared by `shear`: the place of a rest point.

@@ -284,9 +284,10 @@ NoiseFloor noise_floor(const Scene& scene, const Schedule& schedule, const Drape
   return floor;
 }
 
-// Wrinkles fork, so what is left of a disturbance at the end says how far two runs of one drape may differ: a
-// start moved by 1e-15, 1e-12, 1e-9, 1e-6 m leaves 6e-8, 7e-6, 2e-4, 6e-4 m. Round-off of some ten thousand
-// steps is far below a picometre.
+// Wrinkles fork, so what is left of a disturbance at the end says how far two runs of one drape may differ. A
+// start moved by a picometre leaves 1e-5 to 6e-4 m, by a nanometre 1e-4 to 2e-3 m, as settings of the step,
+// of mass scaling or of contact are changed: some free corner folds one way or the other. The largest gap
+// differs by 1e-4 m at most. Round-off of some ten thousand steps is far below a picometre.
 TEST(Symmetry, ADrapeIsTheSameTurnedShiftedMirroredAndRenumberedUpToWhatAPicometreDoes) {
   constexpr double kPicometre = 1e-12, kMultiple = 5;
   const Scene scene = rig_scene();
@@ -297,7 +298,8 @@ TEST(Symmetry, ADrapeIsTheSameTurnedShiftedMirroredAndRenumberedUpToWhatAPicomet
   const NoiseFloor coarse = noise_floor(scene, schedule, reference, 1e3 * kPicometre);
   EXPECT_GE(floor.place, kPicometre);
   EXPECT_GE(coarse.place, floor.place);
-  EXPECT_LE(coarse.place, 1e-3);  // a nanometre is no new drape: the ply is 205 mm wide
+  EXPECT_LE(coarse.place, 2e-3);  // a nanometre is no new drape: the ply is 205 mm wide
+  EXPECT_LE(coarse.gap, 2e-4);
   for (const Change& change : kChanges) {
     const Drape other = drape(scene, schedule, change);
     const double difference = largest_difference(other.places, reference.places);

@@ -1,0 +1,322 @@
+// The shell term of one choice of section points, points across each fibre, and rates.
+#pragma once
+
+#include <cmath>
+#include <type_traits>
+
+#include "fem/rates.hpp"
+#include "fem/shell.hpp"
+#include "fem/shell_bounds.hpp"
+#include "fem/shell_tables.hpp"
+
+namespace drapeplan {
+
+/// A run of kLanes elements; the last one is filled up with copies of its last element that have no area.
+struct Block {
+  std::array<std::array<int, size_t(kLanes)>, 4> node;  ///< by corner and lane
+  bool contiguous = false;  ///< nodes of every corner are consecutive: lanes load and add without gathering
+  int used = 0;
+  ElementGeometry<Lanes> geometry;
+};
+
+struct NoTables {};
+
+template <int N, int A, bool kRates>
+class ShellTerm final : public Shell {
+ public:
+  ShellTerm(const Mesh& mesh, const Fabric& fabric, const FemOptions& options)
+      : mesh_(mesh),
+        material_(kernel_material(fabric, options)),
+        fibre_slope_(material_.fibre.largest_slope()),
+        slow_shear_slope_(fabric.shear.slowest().largest_slope()),
+        shear_slope_(slow_shear_slope_),
+        viscous_mass_(options.bulk_viscosity * options.mass_scaling * fabric.areal_density /
+                      (SectionRule<N>::weight[N / 2] * fabric.thickness)) {
+    if constexpr (kRates) {
+      tables_ = rate_tables(fabric);
+      fibre_slope_ = tables_.fibre.largest_slope(tables_.gain);
+      shear_slope_ = tables_.shear.largest_slope(tables_.gain);
+      lag_rate_ = options.time_scaling / fabric.rate_filter;
+    }
+    for (const auto& quad : mesh.quads) geometry_.push_back(element_geometry(mesh, quad));
+    for (size_t first = 0; first < mesh.quads.size();) first += add_block(first);
+  }
+
+  [[nodiscard]] std::string_view name() const override { return kRates ? "shell with rates" : "shell"; }
+
+  [[nodiscard]] std::vector<Forces> entries() const override {
+    const int n = mesh_.node_count();
+    return {{Book::internal, VectorField(n), VectorField(n)}};
+  }
+
+  void add_stiffness(NodalStiffness& stiffness) const override {
+    add_steepest(fibre_slope_, shear_slope_, stiffness);
+  }
+  void add_slow_stiffness(NodalStiffness& stiffness) const override {
+    add_steepest(material_.fibre.largest_slope(), slow_shear_slope_, stiffness);
+  }
+
+  void look_at_sections(const State& state, std::vector<double>& sections) const override {
+    double* at = sections.data();
+    for (size_t b = 0; b < blocks_.size(); ++b) {
+      Corners<Lanes> x, d;
+      load_corners(state, blocks_[b], x, d);
+      auto section = section_tangent<N, A>(blocks_[b].geometry, material_, slopes_of(state, b), x, d);
+      for (const Lanes* part : section.parts()) {
+        store(*part, at);
+        at += kLanes;
+      }
+    }
+  }
+
+  [[nodiscard]] size_t section_count() const override { return 12 * slot_stride(); }
+
+  void add_bounds(const std::vector<double>& sections, const std::vector<double>& slack,
+                  NodalStiffness& stiffness) const override {
+    const double* at = sections.data();
+    for (const Block& block : blocks_) {
+      SectionStiffness<Lanes> section;
+      for (Lanes* part : section.parts()) {
+        *part = load(at);
+        at += kLanes;
+      }
+      CornerShares<Lanes> shares;
+      for (size_t c = 0; c < 4; ++c) {
+        const auto& node = block.node[c];
+        const auto& next = block.node[(c + 1) % 4];
+        shares.lightness[c] = Lanes([&](auto l) { return 1 / slack[size_t(node[size_t(l)])]; });
+        shares.twin[c] = Lanes([&](auto l) { return node[size_t(l)] == next[size_t(l)] ? 1.0 : 0.0; });
+      }
+      const Lanes bound = element_bound(block.geometry, material_, section, shares);
+      const Lanes turn = bound * gyration_squared(block.geometry, material_.thickness);
+      for (size_t c = 0; c < 4; ++c) {
+        for (size_t l = 0; l < size_t(block.used); ++l) {
+          if (shares.twin[c][l] > 0) continue;  // counted at the next corner
+          const auto node = size_t(block.node[c][l]);
+          stiffness.translation[node] += bound[l] * slack[node];
+          stiffness.rotation[node] += turn[l] * slack[node];
+        }
+      }
+    }
+  }
+
+  // Inlined as a whole: lanes then stay in registers between the steps of the kernel.
+  [[gnu::flatten]] void forces(State& state, Forces* entries) const override {
+    VectorField& force = entries->force;
+    VectorField& moment = entries->moment;
+    force.fill(0);
+    moment.fill(0);
+    Corners<Lanes> x, d, f, m;
+    // The stiffest fibre that the stable step dt allows has a stress per strain of density (length / dt)^2,
+    // length = 2 half: stress = ratio times that, times the change of strain in a step, is the stated damping
+    // ratio.
+    const double viscous = 4 * viscous_mass_ / (state.stable_dt * state.stable_dt);
+    const double follow = kRates ? -std::expm1(-state.dt * lag_rate_) : 0;
+    for (size_t b = 0; b < blocks_.size(); ++b) {
+      const Block& block = blocks_[b];
+      load_corners(state, block, x, d);
+      auto law = law_of(state, b, follow);
+      double* before = &state.history[b * size_t(kLanes)];
+      FibreViscosity<Lanes, A> viscosity{{Lanes(viscous) * block.geometry.half1 * block.geometry.half1,
+                                          Lanes(viscous) * block.geometry.half2 * block.geometry.half2},
+                                         {}};
+      for (size_t k = 0; k < kStrainSlots; ++k) viscosity.strain[k] = load(before + k * slot_stride());
+      shell_forces<N, A>(block.geometry, material_, law, viscosity, x, d, f, m);
+      for (size_t k = 0; k < kStrainSlots; ++k) store(viscosity.strain[k], before + k * slot_stride());
+      // Corners 0 and 2, then 1 and 3: neighbours in a row share nodes, so their sums are kept apart in time.
+      for (const size_t c : {size_t(0), size_t(2), size_t(1), size_t(3)}) {
+        scatter(f[c], block, c, force);
+        scatter(m[c], block, c, moment);
+      }
+    }
+  }
+
+  [[nodiscard]] ShellEnergy stored_energy(const State& state) const override {
+    ShellEnergy sum;
+    for (size_t e = 0; e < mesh_.quads.size(); ++e) {
+      const ElementEnergy energy =
+          shell_energy<N, A>(geometry_[e], material_, corners(state.x, e), corners(state.d, e));
+      sum.fabric += energy.fabric;
+      sum.hourglass += energy.hourglass;
+    }
+    return sum;
+  }
+
+  void strains(const State& state, Snapshot& snapshot) const override {
+    const size_t count = mesh_.quads.size();
+    snapshot.shear.resize(count);
+    snapshot.warp_strain.resize(count);
+    snapshot.weft_strain.resize(count);
+    for (size_t e = 0; e < count; ++e) {
+      const auto m = element_motion(geometry_[e], corners(state.x, e), corners(state.d, e));
+      const double length1 = std::sqrt(dot(m.a1, m.a1)), length2 = std::sqrt(dot(m.a2, m.a2));
+      snapshot.shear[e] = std::asin(std::clamp(dot(m.a1, m.a2) / (length1 * length2), -1.0, 1.0));
+      snapshot.warp_strain[e] = length1 - 1;
+      snapshot.weft_strain[e] = length2 - 1;
+    }
+  }
+
+  void let_strains_grow(State& state, double by) const override {
+    if constexpr (kRates) {
+      const size_t slots = 3 * size_t(N) + 2 * (A - 1);
+      for (size_t slot = 0; slot < slots; ++slot) {
+        const bool angle = slot < 3 * size_t(N) && slot % 3 == 2;
+        double* lagged = &state.history[(kStrainSlots + slot) * slot_stride()];
+        for (size_t e = 0; e < slot_stride(); ++e) lagged[e] += angle && lagged[e] > 0 ? -by : by;
+      }
+    }
+  }
+
+  [[nodiscard]] size_t history_count() const override {
+    return (kStrainSlots + (kRates ? 3 * size_t(N) + 2 * (A - 1) : 0)) * slot_stride();
+  }
+
+ private:
+  /// State::history has slots of one strain per element: mid-thickness strains of both fibres at the step
+  /// before, by point across; then, with rates, the lagged strains of the law's slots.
+  static constexpr size_t kStrainSlots = 2 * A;
+
+  size_t add_block(size_t first);
+
+  /// In the rest shape, with fibres and shear as stiff as given [Pa].
+  void add_steepest(double fibre, double shear, NodalStiffness& stiffness) const {
+    const auto section = steepest_section(material_.thickness, fibre, shear);
+    for (size_t e = 0; e < mesh_.quads.size(); ++e) {
+      const auto& quad = mesh_.quads[e];
+      CornerShares<double> shares{{1, 1, 1, 1}, {0, 0, 0, 0}};
+      for (size_t c = 0; c < 4; ++c) shares.twin[c] = quad[c] == quad[(c + 1) % 4] ? 1 : 0;
+      const double bound = element_bound(geometry_[e], material_, section, shares);
+      const double gyration2 = gyration_squared(geometry_[e], material_.thickness);
+      for (size_t c = 0; c < 4; ++c) {
+        if (shares.twin[c] > 0) continue;  // counted at the next corner
+        stiffness.translation[size_t(quad[c])] += bound;
+        stiffness.rotation[size_t(quad[c])] += bound * gyration2;
+      }
+    }
+  }
+  [[nodiscard]] size_t slot_stride() const { return blocks_.size() * size_t(kLanes); }
+
+  auto slopes_of(const State& state, size_t block) const {
+    if constexpr (kRates) {
+      return RateSlopes(tables_, &state.history[kStrainSlots * slot_stride() + block * size_t(kLanes)],
+                        slot_stride());
+    } else {
+      return StaticLaw(material_);
+    }
+  }
+  auto law_of(State& state, size_t block, double follow) const {
+    if constexpr (kRates) {
+      return RateLaw(tables_, &state.history[kStrainSlots * slot_stride() + block * size_t(kLanes)],
+                     slot_stride(), follow);
+    } else {
+      return StaticLaw(material_);
+    }
+  }
+
+  static void load_corners(const State& state, const Block& block, Corners<Lanes>& x, Corners<Lanes>& d) {
+    for (size_t c = 0; c < 4; ++c) {
+      x[c] = gather(state.x, block, c);
+      d[c] = gather(state.d, block, c);
+    }
+  }
+
+  [[nodiscard]] Corners<double> corners(const VectorField& field, size_t element) const {
+    Corners<double> out;
+    for (size_t c = 0; c < 4; ++c) {
+      const auto node = size_t(mesh_.quads[element][c]);
+      out[c] = {field.x[node], field.y[node], field.z[node]};
+    }
+    return out;
+  }
+
+  static Vec3<Lanes> gather(const VectorField& field, const Block& block, size_t corner) {
+    if (block.contiguous) return field.lanes(size_t(block.node[corner][0]));
+    const auto& node = block.node[corner];
+    const auto pick = [&node](const std::vector<double>& values) {
+      return Lanes([&](auto l) { return values[size_t(node[size_t(l)])]; });
+    };
+    return {pick(field.x), pick(field.y), pick(field.z)};
+  }
+
+  static void scatter(const Vec3<Lanes>& value, const Block& block, size_t corner, VectorField& sum) {
+    if (block.contiguous) {
+      const auto at = size_t(block.node[corner][0]);
+      sum.set_lanes(at, sum.lanes(at) + value);
+      return;
+    }
+    for (size_t l = 0; l < size_t(block.used); ++l) {
+      const auto at = size_t(block.node[corner][l]);
+      sum.x[at] += value.x[l];
+      sum.y[at] += value.y[l];
+      sum.z[at] += value.z[l];
+    }
+  }
+
+  Mesh mesh_;
+  KernelMaterial material_;
+  double fibre_slope_, slow_shear_slope_, shear_slope_;  ///< steepest, instantaneous ones with rates [Pa]
+  double
+      viscous_mass_;  ///< damping ratio times scaled mass per area, over the middle point's weight [kg/m^3]
+  double lag_rate_ = 0;  ///< of lagged strains, in the simulation's time [1/s]
+  std::conditional_t<kRates, RateTables, NoTables> tables_;
+  std::vector<ElementGeometry<double>> geometry_;
+  std::vector<Block> blocks_;
+};
+
+/// Appends the block that starts at element `first`; a block ends where the run of consecutive nodes ends.
+template <int N, int A, bool kRates>
+size_t ShellTerm<N, A, kRates>::add_block(size_t first) {
+  const size_t left = std::min(mesh_.quads.size() - first, size_t(kLanes));
+  size_t run = 1;
+  const auto continues = [&](size_t l) {
+    for (size_t c = 0; c < 4; ++c) {
+      if (mesh_.quads[first + l][c] != mesh_.quads[first][c] + int(l)) return false;
+    }
+    return true;
+  };
+  while (run < left && continues(run)) ++run;
+  // A short run at the end of a row takes what follows along, gathered.
+  Block block;
+  block.contiguous = run == size_t(kLanes);
+  block.used = int(left);
+  for (size_t l = 0; l < size_t(kLanes); ++l) {
+    const size_t element = first + std::min(l, left - 1);
+    const bool ghost = l >= left;
+    const ElementGeometry<double>& g = geometry_[element];
+    for (size_t c = 0; c < 4; ++c) block.node[c][l] = mesh_.quads[element][c];
+    block.geometry.b10[l] = g.b10;
+    block.geometry.b11[l] = g.b11;
+    block.geometry.b20[l] = g.b20;
+    block.geometry.b21[l] = g.b21;
+    block.geometry.area[l] = ghost ? 0 : g.area;
+    block.geometry.half1[l] = g.half1;
+    block.geometry.half2[l] = g.half2;
+    block.geometry.skew1[l] = g.skew1;
+    block.geometry.skew2[l] = g.skew2;
+    block.geometry.r11[l] = g.r11;
+    block.geometry.r12[l] = g.r12;
+    block.geometry.r21[l] = g.r21;
+    block.geometry.r22[l] = g.r22;
+  }
+  blocks_.push_back(block);
+  return left;
+}
+
+/// Builds the term for a number of section points; instantiated in files of their own, since each takes long
+/// to compile.
+template <int N>
+std::unique_ptr<Shell> make_shell_of(const Mesh& mesh, const Fabric& fabric, const FemOptions& options) {
+  const auto with_rates = [&]<int A>(std::integral_constant<int, A>) -> std::unique_ptr<Shell> {
+    if (options.rates && fabric.rate_dependent())
+      return std::make_unique<ShellTerm<N, A, true>>(mesh, fabric, options);
+    return std::make_unique<ShellTerm<N, A, false>>(mesh, fabric, options);
+  };
+  return options.fibre_points == 1 ? with_rates(std::integral_constant<int, 1>())
+                                   : with_rates(std::integral_constant<int, 2>());
+}
+
+extern template std::unique_ptr<Shell> make_shell_of<1>(const Mesh&, const Fabric&, const FemOptions&);
+extern template std::unique_ptr<Shell> make_shell_of<3>(const Mesh&, const Fabric&, const FemOptions&);
+extern template std::unique_ptr<Shell> make_shell_of<5>(const Mesh&, const Fabric&, const FemOptions&);
+
+}  // namespace drapeplan
