@@ -25,15 +25,9 @@ class Lookup {
   [[nodiscard]] Lanes operator()(const Lanes& at) const {
     namespace stdx = std::experimental;
     const Lanes place = stdx::clamp((at - Lanes(lower_)) * Lanes(per_step_), Lanes(0.0), Lanes(last_));
-    alignas(stdx::memory_alignment_v<Lanes>) double index[size_t(kLanes)];
-    place.copy_to(index, stdx::vector_aligned);
-    alignas(stdx::memory_alignment_v<Lanes>) double intercept[size_t(kLanes)], slope[size_t(kLanes)];
-    for (size_t l = 0; l < size_t(kLanes); ++l) {
-      const double* line = &line_[2 * size_t(int(index[l]))];
-      intercept[l] = line[0];
-      slope[l] = line[1];
-    }
-    return Lanes(intercept, stdx::vector_aligned) + Lanes(slope, stdx::vector_aligned) * at;
+    Lanes intercept, slope;
+    load_pairs(line_.data(), place, intercept, slope);
+    return intercept + slope * at;
   }
   /// Steepest slope within kLookAhead pieces of `at`: what a stable step must bear until it is chosen anew.
   [[nodiscard]] Lanes steepest_near(const Lanes& at) const {

@@ -64,8 +64,8 @@ class RateLookup {
     Lanes slow0, slow1, fast0, fast1;
     gather(at, slow0, slow1, fast0, fast1);
     const Lanes by_rate = (fast0 - slow0) + (fast1 - slow1) * strain;  // per interval of y
-    const Lanes slow([&](auto l) { return steepest_[at.index[size_t(l)] / 2]; });
-    const Lanes fast([&](auto l) { return steepest_[at.index[size_t(l)] / 2 + pieces_]; });
+    const Lanes slow([&](auto l) { return steepest_[size_t(at.index[size_t(l)])]; });
+    const Lanes fast([&](auto l) { return steepest_[size_t(at.index[size_t(l)]) + pieces_]; });
     return slow + at.share * (fast - slow) +
            std::experimental::abs(by_rate) * Lanes(per_rate_step_) * gain / (Lanes(1.0) + growth);
   }
@@ -75,32 +75,18 @@ class RateLookup {
  private:
   struct Place {
     Lanes share;  ///< between the slower and the faster row
-    std::array<size_t, size_t(kLanes)> index;
+    Lanes index;  ///< of the slower row's piece
   };
   [[nodiscard]] Place place(const Lanes& strain, const Lanes& growth) const {
     namespace stdx = std::experimental;
     const Lanes piece = stdx::clamp((strain - Lanes(lower_)) * Lanes(per_step_), Lanes(0.0), Lanes(last_));
     const Lanes y = stdx::min(log_lanes(Lanes(1.0) + growth) * Lanes(per_rate_step_), Lanes(rows_));
     const Lanes row = stdx::min(stdx::floor(y), Lanes(rows_ - 1));
-    Place at{y - row, {}};
-    for (size_t l = 0; l < size_t(kLanes); ++l)
-      at.index[l] = (size_t(int(row[l])) * pieces_ + size_t(int(piece[l]))) * 2;
-    return at;
+    return {y - row, row * Lanes(double(pieces_)) + stdx::floor(piece)};
   }
   void gather(const Place& at, Lanes& slow0, Lanes& slow1, Lanes& fast0, Lanes& fast1) const {
-    alignas(std::experimental::memory_alignment_v<Lanes>) double value[4][size_t(kLanes)];
-    for (size_t l = 0; l < size_t(kLanes); ++l) {
-      const double* slow = &line_[at.index[l]];
-      const double* fast = slow + 2 * pieces_;
-      value[0][l] = slow[0];
-      value[1][l] = slow[1];
-      value[2][l] = fast[0];
-      value[3][l] = fast[1];
-    }
-    slow0 = load(value[0]);
-    slow1 = load(value[1]);
-    fast0 = load(value[2]);
-    fast1 = load(value[3]);
+    load_pairs(line_.data(), at.index, slow0, slow1);
+    load_pairs(line_.data() + 2 * pieces_, at.index, fast0, fast1);
   }
 
   double lower_ = 0, per_step_ = 1, last_ = 0, per_rate_step_ = 1, rows_ = 1;

@@ -19,6 +19,8 @@
 #pragma once
 
 #include <array>
+#include <type_traits>
+#include <utility>
 
 #include "fem/lanes.hpp"
 #include "fem/lookup.hpp"
@@ -33,7 +35,29 @@ struct ElementGeometry {
   V half1, half2;        ///< half the element's length along each fibre [m]
   V skew1, skew2;        ///< h.X and h.Y: zero for a parallelogram [m]
   V r11, r12, r21,
-      r22;  ///< half the element along its own directions: X,r = (r11, r12), X,s = (r21, r22) [m]
+      r22;             ///< half the element along its own directions: X,r = (r11, r12), X,s = (r21, r22) [m]
+  V across1, across2;  ///< gradients of h.x/4 across each fibre, 1 / (4 half) [1/m]
+  V shape;             ///< of the bilinear element: area (1/half1^2 + 1/half2^2) / 96 [-]
+  V inverse;           ///< of r11 r22 - r12 r21 [1/m^2]
+  V linear_r,
+      linear_s;  ///< weights of linear transverse shear: (r21^2 + r22^2) inverse^2 / 3, and of r1 [1/m^2]
+
+  [[nodiscard]] std::array<V*, 19> parts() {
+    return {&b10, &b11, &b20, &b21,     &area,    &half1, &half2,   &skew1,    &skew2,   &r11,
+            &r12, &r21, &r22, &across1, &across2, &shape, &inverse, &linear_r, &linear_s};
+  }
+  /// True if all elements are rectangles along the fibres, to the bit.
+  [[nodiscard]] bool rectangle() const {
+    const auto all = [](auto condition) {
+      if constexpr (std::is_same_v<decltype(condition), bool>)
+        return condition;
+      else
+        return std::experimental::all_of(condition);
+    };
+    const V zero(0.0);
+    return all(b10 == -b11) && all(b20 == b21) && all(skew1 == zero) && all(skew2 == zero) &&
+           all(r12 == zero) && all(r21 == zero);
+  }
 };
 
 /// Corner values of one element, or of a block: positions or directors.
@@ -100,17 +124,28 @@ struct ElementMotion {
   Vec3<V> a1, a2, c1, c2, mean, hx, hd;
 };
 
-template <class V>
+/// @tparam kRectangle  see ElementGeometry::rectangle: the same, less what is zero.
+template <bool kRectangle = false, class V>
 ElementMotion<V> element_motion(const ElementGeometry<V>& g, const Corners<V>& x, const Corners<V>& d) {
   const Vec3<V> p = x[0] - x[2], q = x[1] - x[3], dp = d[0] - d[2], dq = d[1] - d[3];
+  const Vec3<V> even = d[0] + d[2], odd = d[1] + d[3];
   ElementMotion<V> m;
+  m.mean = V(0.25) * (even + odd);
+  if constexpr (kRectangle) {
+    m.a1 = g.b11 * (q - p);
+    m.a2 = g.b21 * (q + p);
+    m.c1 = g.b11 * (dq - dp);
+    m.c2 = g.b21 * (dq + dp);
+    m.hx = (x[0] + x[2]) - (x[1] + x[3]);
+    m.hd = even - odd;
+    return m;
+  }
   m.a1 = g.b10 * p + g.b11 * q;
   m.a2 = g.b20 * p + g.b21 * q;
   m.c1 = g.b10 * dp + g.b11 * dq;
   m.c2 = g.b20 * dp + g.b21 * dq;
-  m.mean = V(0.25) * ((d[0] + d[2]) + (d[1] + d[3]));
   m.hx = (x[0] + x[2]) - (x[1] + x[3]) - g.skew1 * m.a1 - g.skew2 * m.a2;
-  m.hd = (d[0] + d[2]) - (d[1] + d[3]) - g.skew1 * m.c1 - g.skew2 * m.c2;
+  m.hd = even - odd - g.skew1 * m.c1 - g.skew2 * m.c2;
   return m;
 }
 
@@ -122,9 +157,9 @@ struct HourglassStiffness {
 };
 template <class V>
 HourglassStiffness<V> hourglass_stiffness(const ElementGeometry<V>& g, const KernelMaterial& material) {
-  const V shape = g.area * (V(1.0) / (g.half1 * g.half1) + V(1.0) / (g.half2 * g.half2)) * V(1.0 / 96);
   const double t = material.thickness;
-  return {V(material.hourglass_modulus * t) * shape, V(material.director_modulus * t * t * t / 12) * shape};
+  return {V(material.hourglass_modulus * t) * g.shape,
+          V(material.director_modulus * t * t * t / 12) * g.shape};
 }
 
 /// Transverse shear of an element: its energy per rest area, and the derivatives of that by its arguments.
@@ -140,28 +175,55 @@ struct TransverseShear {
   V energy;
 };
 
+/// Products of an element's derivatives: all that strains, at any height and place across, depend on.
 template <class V>
-TransverseShear<V> transverse_shear(const ElementGeometry<V>& g, const ElementMotion<V>& m, const V& q) {
-  const V quarter(0.25), det = g.r11 * g.r22 - g.r12 * g.r21, inverse = V(1.0) / det;
-  const V s1 = dot(m.a1, m.mean), s2 = dot(m.a2, m.mean);
-  const V b11 = dot(m.a1, m.c1), b12 = dot(m.a1, m.c2), b21 = dot(m.a2, m.c1), b22 = dot(m.a2, m.c2);
+struct MotionProducts {
+  V a11, a22, a12;       ///< a_i.a_j
+  V b11, b12, b21, b22;  ///< a_i.c_j
+  V c11, c22, c12;       ///< c_i.c_j
+  V a1h, a2h, hh;        ///< with hx
+  V s1, s2, warp;        ///< a_k.mean, hx.mean
+};
+
+template <class V>
+MotionProducts<V> motion_products(const ElementMotion<V>& m) {
+  return {dot(m.a1, m.a1), dot(m.a2, m.a2),   dot(m.a1, m.a2),   dot(m.a1, m.c1),
+          dot(m.a1, m.c2), dot(m.a2, m.c1),   dot(m.a2, m.c2),   dot(m.c1, m.c1),
+          dot(m.c2, m.c2), dot(m.c1, m.c2),   dot(m.a1, m.hx),   dot(m.a2, m.hx),
+          dot(m.hx, m.hx), dot(m.a1, m.mean), dot(m.a2, m.mean), dot(m.hx, m.mean)};
+}
+
+template <bool kRectangle = false, class V>
+TransverseShear<V> transverse_shear(const ElementGeometry<V>& g, const MotionProducts<V>& m, const V& q) {
+  const V quarter(0.25), inverse = g.inverse;
+  const V &s1 = m.s1, &s2 = m.s2, &b11 = m.b11, &b12 = m.b12, &b21 = m.b21, &b22 = m.b22;
+  TransverseShear<V> out;
+  if constexpr (kRectangle) {
+    const V y = quarter * m.warp, lr = g.r11 * b12 * g.r22 + y, ls = g.r22 * b21 * g.r11 + y;
+    out.on_s1 = q * s1;
+    out.on_s2 = q * s2;
+    const V qr = q * g.linear_r * lr, qs = q * g.linear_s * ls;
+    out.on_warp = quarter * (qr + qs);
+    out.on_b12 = g.r22 * g.r11 * qr;
+    out.on_b21 = g.r11 * g.r22 * qs;
+    out.on_b11 = out.on_b22 = V(0.0);
+    out.energy = V(0.5) * (out.on_s1 * s1 + out.on_s2 * s2 + qr * lr + qs * ls);
+    return out;
+  }
   const V b1r = g.r11 * b11 + g.r12 * b12, b2r = g.r11 * b21 + g.r12 * b22;  // a_k.d,r
   const V b1s = g.r21 * b11 + g.r22 * b12, b2s = g.r21 * b21 + g.r22 * b22;  // a_k.d,s
   const V k1 = quarter * g.skew1, k2 = quarter * g.skew2;
   const V yr = inverse * (k1 * b1r + k2 * b2r), ys = inverse * (k1 * b1s + k2 * b2s);
   const V shear1 = s1 + g.r22 * ys - g.r12 * yr, shear2 = s2 + g.r11 * yr - g.r21 * ys;
-  const V y = quarter * dot(m.hx, m.mean) + k1 * s1 + k2 * s2;
+  const V y = quarter * m.warp + k1 * s1 + k2 * s2;
   const V lr = g.r11 * b1s + g.r12 * b2s + y, ls = g.r21 * b1r + g.r22 * b2r + y;
-  const V third = q * V(1.0 / 3) * inverse * inverse;
   const V q1 = q * shear1, q2 = q * shear2;
-  const V qr = third * (g.r22 * g.r22 + g.r21 * g.r21) * lr,
-          qs = third * (g.r11 * g.r11 + g.r12 * g.r12) * ls;
+  const V qr = q * g.linear_r * lr, qs = q * g.linear_s * ls;
 
   const V on_ys = inverse * (q1 * g.r22 - q2 * g.r21), on_yr = inverse * (q2 * g.r11 - q1 * g.r12),
           on_y = qr + qs;
   const V on_b1s = g.r11 * qr + k1 * on_ys, on_b2s = g.r12 * qr + k2 * on_ys;
   const V on_b1r = g.r21 * qs + k1 * on_yr, on_b2r = g.r22 * qs + k2 * on_yr;
-  TransverseShear<V> out;
   out.on_s1 = q1 + k1 * on_y;
   out.on_s2 = q2 + k2 * on_y;
   out.on_warp = quarter * on_y;
@@ -200,89 +262,142 @@ constexpr size_t fibre_slot(size_t section_point, size_t fibre, size_t across) {
   return across == 0 ? 3 * section_point + fibre : 3 * size_t(N) + fibre;
 }
 
+/// What the section does: the energy's derivatives by the products, so that forces are sums of few vectors.
+/// Of a fibre, by powers of the height s: n_k = sum over points of (a_k + s c_k) * stress; likewise m_k = sum
+/// of s (a_k + s c_k) * stress, and what both fibres' turning against each other adds.
+template <class V>
+struct SectionForces {
+  std::array<V, 3> fibre1, fibre2, both;  ///< by power of s
+  V uneven1, uneven2;                     ///< of points across: on hx.a_k
+  V across;                               ///< of points across: on hx.hx
+};
+
+/// A fibre at both points across at mid-thickness.
+template <int A, class V, class Law>
+void add_points_across(const V& place, const V& weight, const V& aa, const V& ah, const V& hh, size_t fibre,
+                       size_t first_slot, size_t next_slot, Law& law, FibreViscosity<V, A>& viscosity,
+                       V& stress_sum, V& uneven, V& across) {
+  const V share = V(1.0 / A) * weight, side = V(2.0) * place * ah, bent = place * place * hh;
+  V force[2];
+  for (size_t a = 0; a < 2; ++a) {
+    V length, inverse;
+    root_and_inverse(a == 0 ? V(aa + bent + side) : V(aa + bent - side), length, inverse);
+    const V e = length - V(1.0);
+    V& before = viscosity.strain[2 * a + fibre];
+    const V stress = law.fibre(e, a == 0 ? first_slot : next_slot) + viscosity.modulus[fibre] * (e - before);
+    before = e;
+    force[a] = share * stress * inverse;
+  }
+  stress_sum += force[0] + force[1];
+  uneven = place * (force[0] - force[1]);
+  across += place * place * (force[0] + force[1]);
+}
+
+/// Adds section point K of N.
+template <size_t K, int N, int A, class V, class Law>
+void add_section_point(const ElementGeometry<V>& g, const KernelMaterial& material,
+                       const MotionProducts<V>& m, Law& law, FibreViscosity<V, A>& viscosity,
+                       SectionForces<V>& sum) {
+  constexpr bool kMiddle = 2 * K + 1 == size_t(N);
+  const V s(SectionRule<N>::place[K] * material.thickness), w(SectionRule<N>::weight[K] * material.thickness);
+  V f11 = m.a11, f22 = m.a22, f12 = m.a12;
+  if constexpr (!kMiddle) {
+    f11 += s * (V(2.0) * m.b11 + s * m.c11);
+    f22 += s * (V(2.0) * m.b22 + s * m.c22);
+    f12 += s * (m.b12 + m.b21 + s * m.c12);
+  }
+  V length1, length2, inverse1, inverse2;
+  root_and_inverse(f11, length1, inverse1);
+  root_and_inverse(f22, length2, inverse2);
+  const V sine = f12 * inverse1 * inverse2;
+  const V shear = w * law.shear(sine, 3 * K + 2), turned = shear * sine;
+  V on1 = -(turned * inverse1 * inverse1), on2 = -(turned * inverse2 * inverse2);
+  if constexpr (kMiddle && A == 2) {
+    const V place(AcrossRule<2>::place[0]);
+    add_points_across<A>(V(place * g.across1), w, m.a11, m.a1h, m.hh, 0, fibre_slot<N>(K, 0, 0),
+                         fibre_slot<N>(K, 0, 1), law, viscosity, on1, sum.uneven1, sum.across);
+    add_points_across<A>(V(place * g.across2), w, m.a22, m.a2h, m.hh, 1, fibre_slot<N>(K, 1, 0),
+                         fibre_slot<N>(K, 1, 1), law, viscosity, on2, sum.uneven2, sum.across);
+  } else {
+    const V e1 = length1 - V(1.0), e2 = length2 - V(1.0);
+    V t1 = law.fibre(e1, 3 * K), t2 = law.fibre(e2, 3 * K + 1);
+    if constexpr (kMiddle) {
+      t1 += viscosity.modulus[0] * (e1 - viscosity.strain[0]);
+      t2 += viscosity.modulus[1] * (e2 - viscosity.strain[1]);
+      viscosity.strain[0] = e1;
+      viscosity.strain[1] = e2;
+    }
+    on1 += w * t1 * inverse1;
+    on2 += w * t2 * inverse2;
+  }
+  const V both = shear * inverse1 * inverse2;
+  const auto add = [&s](const V& value, std::array<V, 3>& powers) {
+    powers[0] += value;
+    if constexpr (kMiddle) return;
+    const V once = s * value;
+    powers[1] += once;
+    powers[2] += s * once;
+  };
+  add(on1, sum.fibre1);
+  add(on2, sum.fibre2);
+  add(both, sum.both);
+}
+
 /// Forces that the element exerts on its corners: on positions [N] and on directors [N m].
 /// @param law  stresses at section points, like StaticLaw.
-template <int N, int A, class V, class Law>
+template <int N, int A, bool kRectangle, class V, class Law>
 void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, Law& law,
                   FibreViscosity<V, A>& viscosity, const Corners<V>& x, const Corners<V>& d,
                   Corners<V>& force, Corners<V>& moment) {
-  using std::sqrt;
-  const ElementMotion<V> m = element_motion(g, x, d);
-  const V zero(0.0), one(1.0);
-  Vec3<V> n1{zero, zero, zero}, n2 = n1, m1 = n1, m2 = n1, across = n1;
-
-  for (size_t k = 0; k < size_t(N); ++k) {
-    const V s(SectionRule<N>::place[k] * material.thickness),
-        w(SectionRule<N>::weight[k] * material.thickness);
-    const Vec3<V> f1 = m.a1 + s * m.c1, f2 = m.a2 + s * m.c2;
-    const V length1 = sqrt(dot(f1, f1)), length2 = sqrt(dot(f2, f2));
-    const V inverse1 = one / length1, inverse2 = one / length2;
-    const V sine = dot(f1, f2) * inverse1 * inverse2;
-    const V shear = law.shear(sine, 3 * k + 2);
-    const V both = w * shear * inverse1 * inverse2;
-    const bool middle = 2 * k + 1 == size_t(N);
-    V t1 = zero, t2 = zero;
-    if (!middle || A == 1) {
-      const V e1 = length1 - one, e2 = length2 - one;
-      t1 = law.fibre(e1, 3 * k);
-      t2 = law.fibre(e2, 3 * k + 1);
-      if (middle) {
-        t1 += viscosity.modulus[0] * (e1 - viscosity.strain[0]);
-        t2 += viscosity.modulus[1] * (e2 - viscosity.strain[1]);
-        viscosity.strain[0] = e1;
-        viscosity.strain[1] = e2;
-      }
-    }
-    const Vec3<V> p1 = (w * (t1 - shear * sine * inverse1) * inverse1) * f1 + both * f2;
-    const Vec3<V> p2 = (w * (t2 - shear * sine * inverse2) * inverse2) * f2 + both * f1;
-    n1 = n1 + p1;
-    n2 = n2 + p2;
-    m1 = m1 + s * p1;
-    m2 = m2 + s * p2;
-    if (middle && A == 2) {
-      for (size_t fibre = 0; fibre < 2; ++fibre) {
-        const Vec3<V>& along = fibre == 0 ? m.a1 : m.a2;
-        const V quarter = V(0.25) / (fibre == 0 ? g.half1 : g.half2);
-        for (size_t a = 0; a < size_t(A); ++a) {
-          const V place = V(AcrossRule<A>::place[a]) * quarter;
-          const Vec3<V> f = along + place * m.hx;
-          const V length = sqrt(dot(f, f)), e = length - one;
-          V& before = viscosity.strain[2 * a + fibre];
-          const V stress = law.fibre(e, fibre_slot<N>(k, fibre, a)) + viscosity.modulus[fibre] * (e - before);
-          before = e;
-          const Vec3<V> p = (V(1.0 / A) * w * stress / length) * f;
-          (fibre == 0 ? n1 : n2) = (fibre == 0 ? n1 : n2) + p;
-          across = across + place * p;
-        }
-      }
-    }
+  const ElementMotion<V> m = element_motion<kRectangle>(g, x, d);
+  const MotionProducts<V> products = motion_products(m);
+  const V zero(0.0);
+  SectionForces<V> f{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}, zero, zero, zero};
+  [&]<size_t... K>(std::index_sequence<K...>) {
+    (add_section_point<K, N, A>(g, material, products, law, viscosity, f), ...);
   }
+  (std::make_index_sequence<size_t(N)>());
 
-  const TransverseShear<V> q = transverse_shear(g, m, V(material.transverse));
-  n1 = n1 + q.on_s1 * m.mean + q.on_b11 * m.c1 + q.on_b12 * m.c2;
-  n2 = n2 + q.on_s2 * m.mean + q.on_b21 * m.c1 + q.on_b22 * m.c2;
-  m1 = m1 + q.on_b11 * m.a1 + q.on_b21 * m.a2;
-  m2 = m2 + q.on_b12 * m.a1 + q.on_b22 * m.a2;
-  const V warp = dot(m.hx, m.mean);
+  const TransverseShear<V> q = transverse_shear<kRectangle>(g, products, V(material.transverse));
+  V on11 = f.fibre1[1], on22 = f.fibre2[1];
+  if constexpr (!kRectangle) {
+    on11 += q.on_b11;
+    on22 += q.on_b22;
+  }
+  const V on12 = f.both[1] + q.on_b12, on21 = f.both[1] + q.on_b21;
+  const Vec3<V> n1 =
+      f.fibre1[0] * m.a1 + f.both[0] * m.a2 + on11 * m.c1 + on12 * m.c2 + q.on_s1 * m.mean + f.uneven1 * m.hx;
+  const Vec3<V> n2 =
+      f.both[0] * m.a1 + f.fibre2[0] * m.a2 + on21 * m.c1 + on22 * m.c2 + q.on_s2 * m.mean + f.uneven2 * m.hx;
+  const Vec3<V> m1 = on11 * m.a1 + on21 * m.a2 + f.fibre1[2] * m.c1 + f.both[2] * m.c2;
+  const Vec3<V> m2 = on12 * m.a1 + on22 * m.a2 + f.both[2] * m.c1 + f.fibre2[2] * m.c2;
   const HourglassStiffness<V> h = hourglass_stiffness(g, material);
+  const V on_warp = g.area * q.on_warp - h.membrane * products.warp;
+  const V quarter = V(0.25) * g.area;
   const Vec3<V> on_mean =
-      g.area * (q.on_s1 * m.a1 + q.on_s2 * m.a2 + q.on_warp * m.hx) - (h.membrane * warp) * m.hx;
-  const Vec3<V> on_hx =
-      g.area * across + (g.area * q.on_warp - h.membrane * warp) * m.mean + h.membrane * m.hx;
+      (quarter * q.on_s1) * m.a1 + (quarter * q.on_s2) * m.a2 + (V(0.25) * on_warp) * m.hx;
+  const Vec3<V> on_hx = (g.area * f.uneven1) * m.a1 + (g.area * f.uneven2) * m.a2 +
+                        (g.area * f.across + h.membrane) * m.hx + on_warp * m.mean;
   const Vec3<V> on_hd = h.director * m.hd;
 
-  // From derivatives back to corners; a force is minus the energy's derivative.
-  const auto spread = [&g](const Vec3<V>& on1, const Vec3<V>& on2, const Vec3<V>& on_h, const Vec3<V>& on_all,
-                           Corners<V>& out) {
-    const Vec3<V> r1 = g.area * on1 - g.skew1 * on_h, r2 = g.area * on2 - g.skew2 * on_h;
-    const Vec3<V> p = g.b10 * r1 + g.b20 * r2, r = g.b11 * r1 + g.b21 * r2;
-    out[0] = V(-1.0) * (on_all + p + on_h);
-    out[1] = V(-1.0) * (on_all + r - on_h);
-    out[2] = p - on_all - on_h;
-    out[3] = r - on_all + on_h;
-  };
-  spread(n1, n2, on_hx, {zero, zero, zero}, force);
-  spread(m1, m2, on_hd, V(0.25) * on_mean, moment);
+  // A force is minus the energy's derivative. In a rectangle b = (-b11, b11, b11, -b11) and
+  // (b21, b21, -b21, -b21).
+  if constexpr (kRectangle) {
+    const Vec3<V> u = (g.area * g.b11) * n1, v = (g.area * g.b21) * n2, sum = u + v, difference = u - v;
+    force = {difference - on_hx, on_hx - sum, -difference - on_hx, sum + on_hx};
+    const Vec3<V> mu = (g.area * g.b11) * m1, mv = (g.area * g.b21) * m2;
+    const Vec3<V> msum = mu + mv, mdifference = mu - mv, even = on_mean + on_hd, odd = on_mean - on_hd;
+    moment = {mdifference - even, -msum - odd, -mdifference - even, msum - odd};
+  } else {
+    const auto corners = [&g](const Vec3<V>& on1, const Vec3<V>& on2, const Vec3<V>& on_h, Corners<V>& out) {
+      const Vec3<V> r1 = g.area * on1 - g.skew1 * on_h, r2 = g.area * on2 - g.skew2 * on_h;
+      const Vec3<V> p = g.b10 * r1 + g.b20 * r2, r = g.b11 * r1 + g.b21 * r2;
+      out = {-p - on_h, on_h - r, p - on_h, r + on_h};
+    };
+    corners(n1, n2, on_hx, force);
+    corners(m1, m2, on_hd, moment);
+    for (Vec3<V>& at : moment) at = at - on_mean;
+  }
 }
 
 /// Stored energy of one element [J].
@@ -317,7 +432,7 @@ ElementEnergy shell_energy(const ElementGeometry<double>& g, const KernelMateria
   const double warp = dot(m.hx, m.mean);
   const HourglassStiffness<double> h = hourglass_stiffness(g, material);
   ElementEnergy energy;
-  energy.fabric = g.area * (density + transverse_shear(g, m, material.transverse).energy);
+  energy.fabric = g.area * (density + transverse_shear(g, motion_products(m), material.transverse).energy);
   energy.hourglass = 0.5 * h.membrane * (dot(m.hx, m.hx) - warp * warp) + 0.5 * h.director * dot(m.hd, m.hd);
   return energy;
 }

@@ -80,7 +80,7 @@ ElementGeometry<double> element_geometry(const Mesh& mesh, const std::array<int,
   g.b21 = -ac.x() / (2 * g.area);
   g.half1 = 0.5 / std::sqrt(2 * (g.b10 * g.b10 + g.b11 * g.b11));
   g.half2 = 0.5 / std::sqrt(2 * (g.b20 * g.b20 + g.b21 * g.b21));
-  const Eigen::Vector2d skew = X[0] - X[1] + X[2] - X[3];
+  const Eigen::Vector2d skew = (X[0] - X[1]) + (X[2] - X[3]);  // in this order zero for a rectangle
   g.skew1 = skew.x();
   g.skew2 = skew.y();
   const Eigen::Vector2d r = 0.25 * (ac - bd), s = 0.25 * (ac + bd);
@@ -88,6 +88,12 @@ ElementGeometry<double> element_geometry(const Mesh& mesh, const std::array<int,
   g.r12 = r.y();
   g.r21 = s.x();
   g.r22 = s.y();
+  g.across1 = 0.25 / g.half1;
+  g.across2 = 0.25 / g.half2;
+  g.shape = g.area * (1 / (g.half1 * g.half1) + 1 / (g.half2 * g.half2)) / 96;
+  g.inverse = 1 / (g.r11 * g.r22 - g.r12 * g.r21);
+  g.linear_r = s.squaredNorm() * g.inverse * g.inverse / 3;
+  g.linear_s = r.squaredNorm() * g.inverse * g.inverse / 3;
   return g;
 }
 

@@ -1,6 +1,7 @@
 // The shell term of one choice of section points, points across each fibre, and rates.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -15,8 +16,9 @@ namespace drapeplan {
 struct Block {
   std::array<std::array<int, size_t(kLanes)>, 4> node;  ///< by corner and lane
   bool contiguous = false;  ///< nodes of every corner are consecutive: lanes load and add without gathering
+  bool rectangle = false;   ///< all elements are, along the fibres
   int used = 0;
-  ElementGeometry<Lanes> geometry;
+  size_t geometry = 0;     ///< among the different ones: in a rectangle few blocks differ
 };
 
 struct NoTables {};
@@ -61,7 +63,8 @@ class ShellTerm final : public Shell {
     for (size_t b = 0; b < blocks_.size(); ++b) {
       Corners<Lanes> x, d;
       load_corners(state, blocks_[b], x, d);
-      auto section = section_tangent<N, A>(blocks_[b].geometry, material_, slopes_of(state, b), x, d);
+      auto section =
+          section_tangent<N, A>(geometries_[blocks_[b].geometry], material_, slopes_of(state, b), x, d);
       for (const Lanes* part : section.parts()) {
         store(*part, at);
         at += kLanes;
@@ -87,8 +90,8 @@ class ShellTerm final : public Shell {
         shares.lightness[c] = Lanes([&](auto l) { return 1 / slack[size_t(node[size_t(l)])]; });
         shares.twin[c] = Lanes([&](auto l) { return node[size_t(l)] == next[size_t(l)] ? 1.0 : 0.0; });
       }
-      const Lanes bound = element_bound(block.geometry, material_, section, shares);
-      const Lanes turn = bound * gyration_squared(block.geometry, material_.thickness);
+      const Lanes bound = element_bound(geometries_[block.geometry], material_, section, shares);
+      const Lanes turn = bound * gyration_squared(geometries_[block.geometry], material_.thickness);
       for (size_t c = 0; c < 4; ++c) {
         for (size_t l = 0; l < size_t(block.used); ++l) {
           if (shares.twin[c][l] > 0) continue;  // counted at the next corner
@@ -116,12 +119,16 @@ class ShellTerm final : public Shell {
       const Block& block = blocks_[b];
       load_corners(state, block, x, d);
       auto law = law_of(state, b, follow);
+      const ElementGeometry<Lanes>& g = geometries_[block.geometry];
       double* before = &state.history[b * size_t(kLanes)];
-      FibreViscosity<Lanes, A> viscosity{{Lanes(viscous) * block.geometry.half1 * block.geometry.half1,
-                                          Lanes(viscous) * block.geometry.half2 * block.geometry.half2},
-                                         {}};
+      FibreViscosity<Lanes, A> viscosity{
+          {Lanes(viscous) * g.half1 * g.half1, Lanes(viscous) * g.half2 * g.half2}, {}};
       for (size_t k = 0; k < kStrainSlots; ++k) viscosity.strain[k] = load(before + k * slot_stride());
-      shell_forces<N, A>(block.geometry, material_, law, viscosity, x, d, f, m);
+      if (block.rectangle) {
+        shell_forces<N, A, true>(g, material_, law, viscosity, x, d, f, m);
+      } else {
+        shell_forces<N, A, false>(g, material_, law, viscosity, x, d, f, m);
+      }
       for (size_t k = 0; k < kStrainSlots; ++k) store(viscosity.strain[k], before + k * slot_stride());
       // Corners 0 and 2, then 1 and 3: neighbours in a row share nodes, so their sums are kept apart in time.
       for (const size_t c : {size_t(0), size_t(2), size_t(1), size_t(3)}) {
@@ -261,6 +268,7 @@ class ShellTerm final : public Shell {
   std::conditional_t<kRates, RateTables, NoTables> tables_;
   std::vector<ElementGeometry<double>> geometry_;
   std::vector<Block> blocks_;
+  std::vector<ElementGeometry<Lanes>> geometries_;
 };
 
 /// Appends the block that starts at element `first`; a block ends where the run of consecutive nodes ends.
@@ -279,25 +287,24 @@ size_t ShellTerm<N, A, kRates>::add_block(size_t first) {
   Block block;
   block.contiguous = run == size_t(kLanes);
   block.used = int(left);
+  ElementGeometry<Lanes> geometry;
   for (size_t l = 0; l < size_t(kLanes); ++l) {
     const size_t element = first + std::min(l, left - 1);
-    const bool ghost = l >= left;
-    const ElementGeometry<double>& g = geometry_[element];
     for (size_t c = 0; c < 4; ++c) block.node[c][l] = mesh_.quads[element][c];
-    block.geometry.b10[l] = g.b10;
-    block.geometry.b11[l] = g.b11;
-    block.geometry.b20[l] = g.b20;
-    block.geometry.b21[l] = g.b21;
-    block.geometry.area[l] = ghost ? 0 : g.area;
-    block.geometry.half1[l] = g.half1;
-    block.geometry.half2[l] = g.half2;
-    block.geometry.skew1[l] = g.skew1;
-    block.geometry.skew2[l] = g.skew2;
-    block.geometry.r11[l] = g.r11;
-    block.geometry.r12[l] = g.r12;
-    block.geometry.r21[l] = g.r21;
-    block.geometry.r22[l] = g.r22;
+    ElementGeometry<double> one = geometry_[element];
+    if (l >= left) one.area = 0;
+    for (size_t k = 0; k < one.parts().size(); ++k) (*geometry.parts()[k])[l] = *one.parts()[k];
   }
+  block.rectangle = geometry.rectangle();
+  const auto same = [&geometry](ElementGeometry<Lanes>& other) {
+    for (size_t k = 0; k < geometry.parts().size(); ++k) {
+      if (std::experimental::any_of(*geometry.parts()[k] != *other.parts()[k])) return false;
+    }
+    return true;
+  };
+  const auto known = std::find_if(geometries_.begin(), geometries_.end(), same);
+  block.geometry = size_t(known - geometries_.begin());
+  if (known == geometries_.end()) geometries_.push_back(geometry);
   blocks_.push_back(block);
   return left;
 }
