@@ -28,6 +28,16 @@ inline void store(const Lanes& value, double* at) {
   value.copy_to(at, std::experimental::element_aligned);
 }
 
+/// Every value one lane further; zero in the first.
+inline Lanes shifted_up(const Lanes& value) {
+#if defined(__AVX512F__)
+  return Lanes(_mm512_castsi512_pd(_mm512_alignr_epi64(_mm512_castpd_si512(static_cast<__m512d>(value)),
+                                                       _mm512_setzero_si512(), kLanes - 1)));
+#else
+  return Lanes([&](auto l) { return l == 0 ? 0.0 : value[size_t(l) - (l == 0 ? 0 : 1)]; });
+#endif
+}
+
 /// Entries 2k and 2k + 1 of a table for k = place cut to a whole number, not below 0; faster than lane by
 /// lane.
 inline void load_pairs(const double* table, const Lanes& place, Lanes& even, Lanes& odd) {

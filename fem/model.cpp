@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -132,18 +131,21 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
 
 /// Held nodes bear any stiffness; tied ones with their share of their pad.
 void Model::bear_held_nodes() {
-  constexpr double kAny = std::numeric_limits<double>::infinity();
   bearing_mass_ = own_mass_;
   if (rig_) {
     const std::vector<double> ratios = rig_->mass_ratios(mass_, inertia_);
     for (size_t i = 0; i < ratios.size(); ++i) bearing_mass_[size_t(rig_->tied()[i])] *= ratios[i];
   }
-  bearing_inertia_ = bearing_mass_;
-  for (size_t k = 0; k < own_mass_.size(); ++k) bearing_inertia_[k] *= gyration2_[k];
-  for (const int node : scene_.pinned) bearing_mass_[size_t(node)] = kAny;
-  for (const int node : scene_.clamped) bearing_mass_[size_t(node)] = bearing_inertia_[size_t(node)] = kAny;
+  mobility_.assign(padded(node_count()), 0.0);
+  turning_mobility_ = mobility_;
+  for (size_t k = 0; k < own_mass_.size(); ++k) {
+    mobility_[k] = 1 / bearing_mass_[k];
+    turning_mobility_[k] = mobility_[k] / gyration2_[k];
+  }
+  for (const int node : scene_.pinned) mobility_[size_t(node)] = 0;
+  for (const int node : scene_.clamped) mobility_[size_t(node)] = turning_mobility_[size_t(node)] = 0;
   for (const Grip& grip : scene_.grips) {
-    for (const int node : grip.nodes) bearing_mass_[size_t(node)] = bearing_inertia_[size_t(node)] = kAny;
+    for (const int node : grip.nodes) mobility_[size_t(node)] = turning_mobility_[size_t(node)] = 0;
   }
 }
 
@@ -160,10 +162,9 @@ void Model::add_contact(NodalStiffness& stiffness) {
     const auto k = size_t(node);
     const double surplus = bearing_mass_[k] - own_mass_[k];
     springs.stiffness[k] = std::max(springs.stiffness[k], kPadShare * surplus * highest * highest);
-    own_mass_[k] = bearing_mass_[k];
   }
   for (size_t k = 0; k < n; ++k)
-    springs.damping[k] = 2 * options.contact_damping * std::sqrt(springs.stiffness[k] * own_mass_[k]);
+    springs.damping[k] = 2 * options.contact_damping * std::sqrt(springs.stiffness[k] * bearing_mass_[k]);
   terms_.push_back(make_contact(*scene_.mold, scene_.friction, std::move(springs),
                                 0.5 * scene_.fabric.thickness, options.step_interval));
   terms_.back()->add_stiffness(stiffness);
@@ -172,24 +173,34 @@ void Model::add_contact(NodalStiffness& stiffness) {
 // Played with the velocity of half a step before, a dashpot c counts like a spring c s with s = 2 / dt: at a
 // node's limit s^2 = K / m + c / m s. A shorter step leaves more room than it takes.
 double Model::highest_rate(const NodalStiffness& stiffness) const {
-  double largest = 0;
-  for (size_t k = 0; k < bearing_mass_.size(); ++k) {
-    const double half = 0.5 * stiffness.damping[k] / bearing_mass_[k];
-    const double spring = stiffness.translation[k] / bearing_mass_[k];
-    const double turn = stiffness.rotation[k] / bearing_inertia_[k];
-    largest = std::max({largest, half + std::sqrt(half * half + spring), std::sqrt(turn)});
+  namespace stdx = std::experimental;
+  Lanes largest(0.0);
+  for (size_t n = 0; n < size_t(node_count()); n += size_t(kLanes)) {
+    const Lanes mobility = load(&mobility_[n]);
+    const Lanes half = Lanes(0.5) * load(&stiffness.damping[n]) * mobility;
+    const Lanes moving = half + stdx::sqrt(half * half + load(&stiffness.translation[n]) * mobility);
+    const Lanes turning = stdx::sqrt(load(&stiffness.rotation[n]) * load(&turning_mobility_[n]));
+    largest = stdx::max(largest, stdx::max(moving, turning));
   }
-  return largest;
+  return stdx::hmax(largest);
 }
 
 double Model::stable_dt(const NodalStiffness& stiffness) const {
   return 2 / highest_rate(stiffness) * viscous_share(scene_.options.bulk_viscosity);
 }
 
-double Model::slack(const NodalStiffness& stiffness, size_t node, double rate) const {
-  const double moving = rate * (rate * bearing_mass_[node] - stiffness.damping[node]);
-  const double turning = rate * rate * bearing_inertia_[node];
-  return std::min(moving / stiffness.translation[node], turning / stiffness.rotation[node]);
+void Model::lighten(const NodalStiffness& stiffness, std::vector<double>& lightness) const {
+  namespace stdx = std::experimental;
+  constexpr double kLeast = 1e-3;  // such a corner hardly counts
+  const Lanes rate(highest_rate(stiffness)), rate2 = rate * rate;
+  for (size_t n = 0; n < size_t(node_count()); n += size_t(kLanes)) {
+    const Lanes mobility = load(&mobility_[n]);
+    const Lanes moving =
+        load(&stiffness.translation[n]) * mobility / (rate2 - rate * load(&stiffness.damping[n]) * mobility);
+    const Lanes turning = load(&stiffness.rotation[n]) * load(&turning_mobility_[n]) / rate2;
+    store(stdx::clamp(load(&lightness[n]) * stdx::max(moving, turning), Lanes(kLeast), Lanes(1.0)),
+          &lightness[n]);
+  }
 }
 
 double Model::free_mass() const {

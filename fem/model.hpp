@@ -62,8 +62,8 @@ class Model {
   [[nodiscard]] double stable_dt(const NodalStiffness& stiffness) const;
   /// 2 / the stable step without viscosity: a bound of the highest frequency, dashpots counted [1/s].
   [[nodiscard]] double highest_rate(const NodalStiffness& stiffness) const;
-  /// By how much the stiffness of a node may grow until its own rate is `rate` [1/s].
-  [[nodiscard]] double slack(const NodalStiffness& stiffness, size_t node, double rate) const;
+  /// Lowers the lightness of nodes whose own rate is below the highest, so that it becomes that.
+  void lighten(const NodalStiffness& stiffness, std::vector<double>& lightness) const;
   /// Damping rate on the scaled mass [1/s]: with a mass s times larger, modes are sqrt(s) times slower, and
   /// so is what damps them critically. s: of the whole ply.
   [[nodiscard]] double alpha() const { return alpha_; }
@@ -94,9 +94,9 @@ class Model {
   const Shell* shell_ = nullptr;
   std::optional<GripperRig> rig_;
   std::vector<double> mass_, inertia_, inverse_mass_, inverse_inertia_;
-  std::vector<double> bearing_mass_, bearing_inertia_;  ///< what bears stiffness: held nodes' are infinite
-  std::vector<double> own_mass_, gyration2_;  ///< of all nodes, held ones too [kg], [m^2]; a tied node's mass
-                                              ///< is its share of its pad
+  std::vector<double> bearing_mass_;  ///< what bears stiffness: a tied node's is its share of its pad [kg]
+  std::vector<double> mobility_, turning_mobility_;  ///< 1 / bearing mass and inertia; 0 where held [padded]
+  std::vector<double> own_mass_, gyration2_;         ///< of all nodes, held ones too [kg], [m^2]
   double stable_dt_ = 0, alpha_ = 0;
 };
 

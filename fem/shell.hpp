@@ -25,9 +25,9 @@ class Shell : public Term {
   /// The section's tangents at a state, for add_bounds: section_count() numbers.
   virtual void look_at_sections(const State& state, std::vector<double>& sections) const = 0;
   [[nodiscard]] virtual size_t section_count() const = 0;
-  /// Adds bounds of all elements with these sections. @param slack  of each node, at least 1: how much larger
-  /// a part of its elements' stiffness it can bear than others (see CornerShares).
-  virtual void add_bounds(const std::vector<double>& sections, const std::vector<double>& slack,
+  /// Adds bounds of all elements with these sections, times each node's lightness.
+  /// @param lightness  of each node [padded], in (0, 1]: see CornerShares.
+  virtual void add_bounds(const std::vector<double>& sections, const std::vector<double>& lightness,
                           NodalStiffness& stiffness) const = 0;
   /// Moves the remembered strains by so much (beyond zero where they are smaller) that every fibre in
   /// compression and every angle counts as growing: the stiffer side where a law tells growth from decline.

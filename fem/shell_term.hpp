@@ -10,15 +10,76 @@
 #include "fem/shell_bounds.hpp"
 #include "fem/shell_tables.hpp"
 
+// Inlining all of a kernel takes sanitizers many minutes, and gains nothing there.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define DRAPEPLAN_FLATTEN
+#else
+#define DRAPEPLAN_FLATTEN [[gnu::flatten]]
+#endif
+
 namespace drapeplan {
 
 /// A run of kLanes elements; the last one is filled up with copies of its last element that have no area.
 struct Block {
   std::array<std::array<int, size_t(kLanes)>, 4> node;  ///< by corner and lane
-  bool contiguous = false;  ///< nodes of every corner are consecutive: lanes load and add without gathering
-  bool rectangle = false;   ///< all elements are, along the fibres
+  bool in_row = false;     ///< elements of one row of a grid: nodes of a corner follow each other
+  bool rectangle = false;  ///< all elements are, along the fibres
+  bool twins = false;      ///< there are triangles
   int used = 0;
-  size_t geometry = 0;     ///< among the different ones: in a rectangle few blocks differ
+  size_t geometry = 0;  ///< among the different ones: in a rectangle few blocks differ
+};
+
+/// A vector field as the corners of blocks see it. In a row, corners 1 and 2 are the next nodes of corners 0
+/// and 3, so that lanes load without gathering and sums of neighbours are made before they are stored.
+template <class T>
+struct Rows {
+  template <class Field>
+  explicit Rows(Field& field) : part{field.x.data(), field.y.data(), field.z.data()} {}
+
+  [[nodiscard]] Corners<Lanes> in_row(const Block& block) const {
+    const auto lower = size_t(block.node[0][0]), upper = size_t(block.node[3][0]);
+    return {lanes(lower), lanes(lower + 1), lanes(upper + 1), lanes(upper)};
+  }
+  [[nodiscard]] Corners<Lanes> anywhere(const Block& block) const {
+    Corners<Lanes> out;
+    for (size_t c = 0; c < 4; ++c) {
+      const auto& node = block.node[c];
+      const auto pick = [&node](const double* values) {
+        return Lanes([&](auto l) { return values[size_t(node[size_t(l)])]; });
+      };
+      out[c] = {pick(part[0]), pick(part[1]), pick(part[2])};
+    }
+    return out;
+  }
+  void add_in_row(const Block& block, const Corners<Lanes>& values) const {
+    const auto lower = size_t(block.node[0][0]), upper = size_t(block.node[3][0]);
+    add_row(part[0], lower, values[0].x, values[1].x);
+    add_row(part[1], lower, values[0].y, values[1].y);
+    add_row(part[2], lower, values[0].z, values[1].z);
+    add_row(part[0], upper, values[3].x, values[2].x);
+    add_row(part[1], upper, values[3].y, values[2].y);
+    add_row(part[2], upper, values[3].z, values[2].z);
+  }
+  void add_anywhere(const Block& block, const Corners<Lanes>& values) const {
+    for (size_t c = 0; c < 4; ++c) {
+      for (size_t l = 0; l < size_t(block.used); ++l) {
+        const auto at = size_t(block.node[c][l]);
+        part[0][at] += values[c].x[l];
+        part[1][at] += values[c].y[l];
+        part[2][at] += values[c].z[l];
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] Vec3<Lanes> lanes(size_t at) const {
+    return {load(part[0] + at), load(part[1] + at), load(part[2] + at)};
+  }
+  static void add_row(double* sum, size_t at, const Lanes& own, const Lanes& next) {
+    store(load(sum + at) + (own + shifted_up(next)), sum + at);
+    sum[at + size_t(kLanes)] += next[size_t(kLanes) - 1];
+  }
+  std::array<T*, 3> part;
 };
 
 struct NoTables {};
@@ -59,12 +120,13 @@ class ShellTerm final : public Shell {
   }
 
   void look_at_sections(const State& state, std::vector<double>& sections) const override {
+    const Rows<const double> x(state.x), d(state.d);
     double* at = sections.data();
     for (size_t b = 0; b < blocks_.size(); ++b) {
-      Corners<Lanes> x, d;
-      load_corners(state, blocks_[b], x, d);
-      auto section =
-          section_tangent<N, A>(geometries_[blocks_[b].geometry], material_, slopes_of(state, b), x, d);
+      const Block& block = blocks_[b];
+      auto section = section_tangent<N, A>(geometries_[block.geometry], material_, slopes_of(state, b),
+                                           block.in_row ? x.in_row(block) : x.anywhere(block),
+                                           block.in_row ? d.in_row(block) : d.anywhere(block));
       for (const Lanes* part : section.parts()) {
         store(*part, at);
         at += kLanes;
@@ -74,66 +136,63 @@ class ShellTerm final : public Shell {
 
   [[nodiscard]] size_t section_count() const override { return 12 * slot_stride(); }
 
-  void add_bounds(const std::vector<double>& sections, const std::vector<double>& slack,
+  void add_bounds(const std::vector<double>& sections, const std::vector<double>& lightness,
                   NodalStiffness& stiffness) const override {
     const double* at = sections.data();
     for (const Block& block : blocks_) {
+      const ElementGeometry<Lanes>& g = geometries_[block.geometry];
       SectionStiffness<Lanes> section;
       for (Lanes* part : section.parts()) {
         *part = load(at);
         at += kLanes;
       }
-      CornerShares<Lanes> shares;
-      for (size_t c = 0; c < 4; ++c) {
-        const auto& node = block.node[c];
-        const auto& next = block.node[(c + 1) % 4];
-        shares.lightness[c] = Lanes([&](auto l) { return 1 / slack[size_t(node[size_t(l)])]; });
-        shares.twin[c] = Lanes([&](auto l) { return node[size_t(l)] == next[size_t(l)] ? 1.0 : 0.0; });
-      }
-      const Lanes bound = element_bound(geometries_[block.geometry], material_, section, shares);
-      const Lanes turn = bound * gyration_squared(geometries_[block.geometry], material_.thickness);
+      const Lanes bound = element_bound(g, material_, section, corner_shares(block, lightness));
+      const Lanes turn = bound * gyration_squared(g, material_.thickness);
       for (size_t c = 0; c < 4; ++c) {
         for (size_t l = 0; l < size_t(block.used); ++l) {
-          if (shares.twin[c][l] > 0) continue;  // counted at the next corner
+          if (block.twins && block.node[c][l] == block.node[(c + 1) % 4][l]) continue;  // counted there
           const auto node = size_t(block.node[c][l]);
-          stiffness.translation[node] += bound[l] * slack[node];
-          stiffness.rotation[node] += turn[l] * slack[node];
+          stiffness.translation[node] += bound[l];
+          stiffness.rotation[node] += turn[l];
         }
       }
     }
   }
 
   // Inlined as a whole: lanes then stay in registers between the steps of the kernel.
-  [[gnu::flatten]] void forces(State& state, Forces* entries) const override {
-    VectorField& force = entries->force;
-    VectorField& moment = entries->moment;
-    force.fill(0);
-    moment.fill(0);
-    Corners<Lanes> x, d, f, m;
+  DRAPEPLAN_FLATTEN void forces(State& state, Forces* entries) const override {
+    entries->force.fill(0);
+    entries->moment.fill(0);
+    const Rows<const double> x(state.x), d(state.d);
+    const Rows<double> force(entries->force), moment(entries->moment);
     // The stiffest fibre that the stable step dt allows has a stress per strain of density (length / dt)^2,
     // length = 2 half: stress = ratio times that, times the change of strain in a step, is the stated damping
     // ratio.
     const double viscous = 4 * viscous_mass_ / (state.stable_dt * state.stable_dt);
     const double follow = kRates ? -std::expm1(-state.dt * lag_rate_) : 0;
+    const size_t stride = slot_stride();
     for (size_t b = 0; b < blocks_.size(); ++b) {
       const Block& block = blocks_[b];
-      load_corners(state, block, x, d);
-      auto law = law_of(state, b, follow);
       const ElementGeometry<Lanes>& g = geometries_[block.geometry];
+      auto law = law_of(state, b, follow);
       double* before = &state.history[b * size_t(kLanes)];
       FibreViscosity<Lanes, A> viscosity{
           {Lanes(viscous) * g.half1 * g.half1, Lanes(viscous) * g.half2 * g.half2}, {}};
-      for (size_t k = 0; k < kStrainSlots; ++k) viscosity.strain[k] = load(before + k * slot_stride());
-      if (block.rectangle) {
-        shell_forces<N, A, true>(g, material_, law, viscosity, x, d, f, m);
+      for (size_t k = 0; k < kStrainSlots; ++k) viscosity.strain[k] = load(before + k * stride);
+      Corners<Lanes> f, m;
+      if (block.in_row && block.rectangle) {
+        shell_forces<N, A, true>(g, material_, law, viscosity, x.in_row(block), d.in_row(block), f, m);
       } else {
-        shell_forces<N, A, false>(g, material_, law, viscosity, x, d, f, m);
+        shell_forces<N, A, false>(g, material_, law, viscosity, x.anywhere(block), d.anywhere(block), f, m);
       }
-      for (size_t k = 0; k < kStrainSlots; ++k) store(viscosity.strain[k], before + k * slot_stride());
-      // Corners 0 and 2, then 1 and 3: neighbours in a row share nodes, so their sums are kept apart in time.
-      for (const size_t c : {size_t(0), size_t(2), size_t(1), size_t(3)}) {
-        scatter(f[c], block, c, force);
-        scatter(m[c], block, c, moment);
+      for (size_t k = 0; k < kStrainSlots; ++k) store(viscosity.strain[k], before + k * stride);
+      if (block.in_row) {
+        if (block.used < kLanes) clear_idle(block, f), clear_idle(block, m);
+        force.add_in_row(block, f);
+        moment.add_in_row(block, m);
+      } else {
+        force.add_anywhere(block, f);
+        moment.add_anywhere(block, m);
       }
     }
   }
@@ -185,6 +244,30 @@ class ShellTerm final : public Shell {
 
   size_t add_block(size_t first);
 
+  /// Idle lanes of a row's end work on nodes that do not belong together.
+  static void clear_idle(const Block& block, Corners<Lanes>& values) {
+    const Lanes lane([](auto l) { return double(l); });
+    const auto idle = lane >= Lanes(double(block.used));
+    for (Vec3<Lanes>& value : values) {
+      for (Lanes* part : {&value.x, &value.y, &value.z}) std::experimental::where(idle, *part) = Lanes(0.0);
+    }
+  }
+
+  [[nodiscard]] CornerShares<Lanes> corner_shares(const Block& block,
+                                                  const std::vector<double>& lightness) const {
+    CornerShares<Lanes> shares;
+    for (size_t c = 0; c < 4; ++c) {
+      const auto& node = block.node[c];
+      const auto& next = block.node[(c + 1) % 4];
+      shares.lightness[c] = block.in_row ? load(&lightness[size_t(node[0])])
+                                         : Lanes([&](auto l) { return lightness[size_t(node[size_t(l)])]; });
+      shares.twin[c] = block.twins
+                           ? Lanes([&](auto l) { return node[size_t(l)] == next[size_t(l)] ? 1.0 : 0.0; })
+                           : Lanes(0.0);
+    }
+    return shares;
+  }
+
   /// In the rest shape, with fibres and shear as stiff as given [Pa].
   void add_steepest(double fibre, double shear, NodalStiffness& stiffness) const {
     const auto section = steepest_section(material_.thickness, fibre, shear);
@@ -220,13 +303,6 @@ class ShellTerm final : public Shell {
     }
   }
 
-  static void load_corners(const State& state, const Block& block, Corners<Lanes>& x, Corners<Lanes>& d) {
-    for (size_t c = 0; c < 4; ++c) {
-      x[c] = gather(state.x, block, c);
-      d[c] = gather(state.d, block, c);
-    }
-  }
-
   [[nodiscard]] Corners<double> corners(const VectorField& field, size_t element) const {
     Corners<double> out;
     for (size_t c = 0; c < 4; ++c) {
@@ -234,29 +310,6 @@ class ShellTerm final : public Shell {
       out[c] = {field.x[node], field.y[node], field.z[node]};
     }
     return out;
-  }
-
-  static Vec3<Lanes> gather(const VectorField& field, const Block& block, size_t corner) {
-    if (block.contiguous) return field.lanes(size_t(block.node[corner][0]));
-    const auto& node = block.node[corner];
-    const auto pick = [&node](const std::vector<double>& values) {
-      return Lanes([&](auto l) { return values[size_t(node[size_t(l)])]; });
-    };
-    return {pick(field.x), pick(field.y), pick(field.z)};
-  }
-
-  static void scatter(const Vec3<Lanes>& value, const Block& block, size_t corner, VectorField& sum) {
-    if (block.contiguous) {
-      const auto at = size_t(block.node[corner][0]);
-      sum.set_lanes(at, sum.lanes(at) + value);
-      return;
-    }
-    for (size_t l = 0; l < size_t(block.used); ++l) {
-      const auto at = size_t(block.node[corner][l]);
-      sum.x[at] += value.x[l];
-      sum.y[at] += value.y[l];
-      sum.z[at] += value.z[l];
-    }
   }
 
   Mesh mesh_;
@@ -274,25 +327,30 @@ class ShellTerm final : public Shell {
 /// Appends the block that starts at element `first`; a block ends where the run of consecutive nodes ends.
 template <int N, int A, bool kRates>
 size_t ShellTerm<N, A, kRates>::add_block(size_t first) {
-  const size_t left = std::min(mesh_.quads.size() - first, size_t(kLanes));
-  size_t run = 1;
+  size_t used = std::min(mesh_.quads.size() - first, size_t(kLanes)), run = 1;
+  const auto& start = mesh_.quads[first];
   const auto continues = [&](size_t l) {
     for (size_t c = 0; c < 4; ++c) {
-      if (mesh_.quads[first + l][c] != mesh_.quads[first][c] + int(l)) return false;
+      if (mesh_.quads[first + l][c] != start[c] + int(l)) return false;
     }
     return true;
   };
-  while (run < left && continues(run)) ++run;
-  // A short run at the end of a row takes what follows along, gathered.
+  while (run < used && continues(run)) ++run;
   Block block;
-  block.contiguous = run == size_t(kLanes);
-  block.used = int(left);
+  // The end of a row leaves some lanes idle; only a short run takes what follows along, gathered.
+  block.in_row = run >= size_t(kLanes) / 2 && start[1] == start[0] + 1 && start[2] == start[3] + 1;
+  if (block.in_row) used = run;
+  block.used = int(used);
   ElementGeometry<Lanes> geometry;
   for (size_t l = 0; l < size_t(kLanes); ++l) {
-    const size_t element = first + std::min(l, left - 1);
-    for (size_t c = 0; c < 4; ++c) block.node[c][l] = mesh_.quads[element][c];
+    const size_t element = first + std::min(l, used - 1);
+    for (size_t c = 0; c < 4; ++c) {
+      const auto& quad = mesh_.quads[element];
+      block.node[c][l] = quad[c];
+      block.twins = block.twins || quad[c] == quad[(c + 1) % 4];
+    }
     ElementGeometry<double> one = geometry_[element];
-    if (l >= left) one.area = 0;
+    if (l >= used) one.area = 0;
     for (size_t k = 0; k < one.parts().size(); ++k) (*geometry.parts()[k])[l] = *one.parts()[k];
   }
   block.rectangle = geometry.rectangle();
@@ -306,7 +364,7 @@ size_t ShellTerm<N, A, kRates>::add_block(size_t first) {
   block.geometry = size_t(known - geometries_.begin());
   if (known == geometries_.end()) geometries_.push_back(geometry);
   blocks_.push_back(block);
-  return left;
+  return used;
 }
 
 /// Builds the term for a number of section points; instantiated in files of their own, since each takes long

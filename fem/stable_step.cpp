@@ -12,7 +12,6 @@ constexpr double kProbeLength = 1e-9;  // [m] of a node: strains far below a pie
 
 constexpr double kOffTheKink = 3e-5;  // strain, less than the look-ahead of Lookup
 constexpr int kSlackRounds = 4;       // the first gives most: 8 to 17 % of the step, the second 2 to 6 %
-constexpr double kMostSlack = 1e3;    // a corner that bears so much more hardly counts
 constexpr double kGrowth = 1e-6;      // strain: a small rate, where a law with rates is stiffest
 constexpr int kDashpotRounds = 3;     // their share of the rate converges at least threefold in each
 
@@ -120,16 +119,20 @@ double stable_step(const Model& model, const State& state, StepScratch& scratch)
     if (term.get() != &shell) term->add_tangent(state, scratch.others);
   }
   shell.look_at_sections(state, scratch.sections);
-  std::fill(scratch.slack.begin(), scratch.slack.end(), 1.0);
+  std::fill(scratch.lightness.begin(), scratch.lightness.end(), 1.0);
   for (int round = 0;; ++round) {
-    scratch.sum = scratch.others;
-    shell.add_bounds(scratch.sections, scratch.slack, scratch.sum);
-    if (round == kSlackRounds) return model.stable_dt(scratch.sum);
-    const double rate = model.highest_rate(scratch.sum);
-    for (size_t n = 0; n < scratch.slack.size(); ++n) {
-      const double grown = scratch.slack[n] * model.slack(scratch.sum, n, rate);
-      scratch.slack[n] = std::clamp(grown, 1.0, kMostSlack);
+    scratch.sum.clear();
+    shell.add_bounds(scratch.sections, scratch.lightness, scratch.sum);
+    for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
+      const Lanes slack = Lanes(1.0) / load(&scratch.lightness[n]);
+      store(load(&scratch.sum.translation[n]) * slack + load(&scratch.others.translation[n]),
+            &scratch.sum.translation[n]);
+      store(load(&scratch.sum.rotation[n]) * slack + load(&scratch.others.rotation[n]),
+            &scratch.sum.rotation[n]);
     }
+    scratch.sum.damping = scratch.others.damping;
+    if (round == kSlackRounds) return model.stable_dt(scratch.sum);
+    model.lighten(scratch.sum, scratch.lightness);
   }
 }
 

@@ -22,7 +22,7 @@ struct Forces {
 /// above the largest bound over mass (Fried's element bound, weighted per node). Dashpots likewise.
 struct NodalStiffness {
   explicit NodalStiffness(int nodes)
-      : translation(size_t(nodes), 0.0), rotation(size_t(nodes), 0.0), damping(size_t(nodes), 0.0) {}
+      : translation(padded(nodes), 0.0), rotation(padded(nodes), 0.0), damping(padded(nodes), 0.0) {}
   void clear() {
     for (auto* list : {&translation, &rotation, &damping}) std::fill(list->begin(), list->end(), 0.0);
   }

@@ -22,7 +22,7 @@ StepScratch::StepScratch(const Model& model)
     : others(model.node_count()),
       sum(model.node_count()),
       sections(model.shell().section_count()),
-      slack(size_t(model.node_count())) {}
+      lightness(padded(model.node_count())) {}
 
 Workspace::Workspace(const Model& model)
     : mean_v(model.node_count()), mean_w(model.node_count()), step(model) {

@@ -11,9 +11,9 @@ namespace drapeplan {
 struct StepScratch {
   explicit StepScratch(const Model& model);
 
-  NodalStiffness others, sum;    ///< of all terms but the ply; of all
-  std::vector<double> sections;  ///< see Shell::look_at_sections
-  std::vector<double> slack;     ///< of nodes
+  NodalStiffness others, sum;     ///< of all terms but the ply; of all
+  std::vector<double> sections;   ///< see Shell::look_at_sections
+  std::vector<double> lightness;  ///< of nodes [padded]
 };
 
 struct Workspace {
