@@ -95,6 +95,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
         throw std::invalid_argument("grip " + grip.name + " holds a node that is held by something else");
       mass_[size_t(node)] = 0;
       held.push_back(node);
+      guided_.push_back(node);
     }
   }
   if (scene_.rig) {
@@ -108,6 +109,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
         throw std::invalid_argument("a node under a pad is clamped, pinned or gripped");
     }
     held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
+    guided_.insert(guided_.end(), rig_->tied().begin(), rig_->tied().end());
   }
   bear_held_nodes();
   if (scene_.mold) add_contact(stiffness);
@@ -191,16 +193,21 @@ double Model::stable_dt(const NodalStiffness& stiffness) const {
 
 void Model::lighten(const NodalStiffness& stiffness, std::vector<double>& lightness) const {
   namespace stdx = std::experimental;
-  constexpr double kLeast = 1e-3;  // such a corner hardly counts
+  constexpr double kLeast = 0.1;  // less gains little, and takes long to find back when stresses move on
   const Lanes rate(highest_rate(stiffness)), rate2 = rate * rate;
+  Lanes largest(kLeast);
   for (size_t n = 0; n < size_t(node_count()); n += size_t(kLanes)) {
     const Lanes mobility = load(&mobility_[n]);
     const Lanes moving =
         load(&stiffness.translation[n]) * mobility / (rate2 - rate * load(&stiffness.damping[n]) * mobility);
     const Lanes turning = load(&stiffness.rotation[n]) * load(&turning_mobility_[n]) / rate2;
-    store(stdx::clamp(load(&lightness[n]) * stdx::max(moving, turning), Lanes(kLeast), Lanes(1.0)),
-          &lightness[n]);
+    const Lanes light = load(&lightness[n]) * stdx::max(moving, turning);
+    store(light, &lightness[n]);
+    largest = stdx::max(largest, light);
   }
+  const Lanes unit(1 / stdx::hmax(largest));  // only ratios count: the lightest has 1
+  for (size_t n = 0; n < size_t(node_count()); n += size_t(kLanes))
+    store(stdx::clamp(load(&lightness[n]) * unit, Lanes(kLeast), Lanes(1.0)), &lightness[n]);
 }
 
 double Model::free_mass() const {
@@ -274,6 +281,7 @@ State Model::flat_state(double height) const {
     state.stuck.assign(padded(n), 0.0);
   }
   state.history.assign(shell_->history_count(), 0.0);
+  state.lightness.assign(padded(n), 1.0);
   state.dt = state.dt_before = dt();
   state.stable_dt = stable_dt_;
   const Eigen::Vector2d& place = scene_.position;

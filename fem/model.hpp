@@ -85,6 +85,9 @@ class Model {
   /// The flat ply at rest, level at `height` [m] or on the mold, as the scene says.
   [[nodiscard]] State flat_state(double height) const;
 
+  /// Nodes whose motion is given by pads and grips.
+  [[nodiscard]] const std::vector<int>& guided() const { return guided_; }
+
  private:
   void bear_held_nodes();
   void add_contact(NodalStiffness& stiffness);
@@ -94,6 +97,7 @@ class Model {
   const Shell* shell_ = nullptr;
   std::optional<GripperRig> rig_;
   std::vector<double> mass_, inertia_, inverse_mass_, inverse_inertia_;
+  std::vector<int> guided_;
   std::vector<double> bearing_mass_;  ///< what bears stiffness: a tied node's is its share of its pad [kg]
   std::vector<double> mobility_, turning_mobility_;  ///< 1 / bearing mass and inertia; 0 where held [padded]
   std::vector<double> own_mass_, gyration2_;         ///< of all nodes, held ones too [kg], [m^2]

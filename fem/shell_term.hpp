@@ -29,6 +29,13 @@ struct Block {
   size_t geometry = 0;  ///< among the different ones: in a rectangle few blocks differ
 };
 
+/// Adds a row's shares of its elements' lower (or upper) corners to nodes: `own` to node `at` and those that
+/// follow, `next` to the nodes after them.
+inline void add_row(double* sum, size_t at, const Lanes& own, const Lanes& next) {
+  store(load(sum + at) + (own + shifted_up(next)), sum + at);
+  sum[at + size_t(kLanes)] += next[size_t(kLanes) - 1];
+}
+
 /// A vector field as the corners of blocks see it. In a row, corners 1 and 2 are the next nodes of corners 0
 /// and 3, so that lanes load without gathering and sums of neighbours are made before they are stored.
 template <class T>
@@ -74,10 +81,6 @@ struct Rows {
  private:
   [[nodiscard]] Vec3<Lanes> lanes(size_t at) const {
     return {load(part[0] + at), load(part[1] + at), load(part[2] + at)};
-  }
-  static void add_row(double* sum, size_t at, const Lanes& own, const Lanes& next) {
-    store(load(sum + at) + (own + shifted_up(next)), sum + at);
-    sum[at + size_t(kLanes)] += next[size_t(kLanes) - 1];
   }
   std::array<T*, 3> part;
 };
@@ -146,8 +149,16 @@ class ShellTerm final : public Shell {
         *part = load(at);
         at += kLanes;
       }
-      const Lanes bound = element_bound(g, material_, section, corner_shares(block, lightness));
+      Lanes bound = element_bound(g, material_, section, corner_shares(block, lightness));
+      if (block.used < kLanes) clear_idle(block, bound);
       const Lanes turn = bound * gyration_squared(g, material_.thickness);
+      if (block.in_row) {
+        for (const size_t c : {size_t(0), size_t(3)}) {
+          add_row(stiffness.translation.data(), size_t(block.node[c][0]), bound, bound);
+          add_row(stiffness.rotation.data(), size_t(block.node[c][0]), turn, turn);
+        }
+        continue;
+      }
       for (size_t c = 0; c < 4; ++c) {
         for (size_t l = 0; l < size_t(block.used); ++l) {
           if (block.twins && block.node[c][l] == block.node[(c + 1) % 4][l]) continue;  // counted there
@@ -245,11 +256,13 @@ class ShellTerm final : public Shell {
   size_t add_block(size_t first);
 
   /// Idle lanes of a row's end work on nodes that do not belong together.
-  static void clear_idle(const Block& block, Corners<Lanes>& values) {
+  static void clear_idle(const Block& block, Lanes& value) {
     const Lanes lane([](auto l) { return double(l); });
-    const auto idle = lane >= Lanes(double(block.used));
+    std::experimental::where(lane >= Lanes(double(block.used)), value) = Lanes(0.0);
+  }
+  static void clear_idle(const Block& block, Corners<Lanes>& values) {
     for (Vec3<Lanes>& value : values) {
-      for (Lanes* part : {&value.x, &value.y, &value.z}) std::experimental::where(idle, *part) = Lanes(0.0);
+      for (Lanes* part : {&value.x, &value.y, &value.z}) clear_idle(block, *part);
     }
   }
 

@@ -6,9 +6,9 @@
 namespace drapeplan {
 
 /// Stable step at a state [s]: summed bounds of all terms, with the slopes that their laws have at and near
-/// the state. Bounds of elements are spread over their corners in rounds, each of which takes from nodes that
-/// govern and gives to those with slack. At least Model::stable_dt().
-double stable_step(const Model& model, const State& state, StepScratch& scratch);
+/// the state. The bound of an element is spread over its corners; every call takes from nodes that govern and
+/// gives to those with slack (state.lightness), at step 0 in several rounds. At least Model::stable_dt().
+double stable_step(const Model& model, State& state, StepScratch& scratch);
 
 /// True stable step of the linearised system at a state [s]: 2 / largest frequency by Lanczos' method, with
 /// the stiffness by central differences of all forces. Pads and clamped nodes are held. Costs about a hundred

@@ -62,6 +62,9 @@ struct State {
   std::vector<double> stuck;    ///< 1: the node touched the mold at the last step; empty without friction
   std::vector<double> history;  ///< what elements remember of their strains; see shell.cpp
   std::vector<PadState> pads;   ///< empty without a rig
+  /// How the bounds of elements were spread over nodes when the step was last chosen [padded]: see
+  /// CornerShares.
+  std::vector<double> lightness;
   std::array<double, kBooks> work{};  ///< done on the moving masses since the start [J]
   RunRecord record;                   ///< not part of the hash
 

@@ -13,7 +13,7 @@
 namespace drapeplan {
 namespace {
 
-constexpr std::string_view kMagic = "drapeplan state 1\n";
+constexpr std::string_view kMagic = "drapeplan state 2\n";
 constexpr size_t kWord = 8;  // bytes
 
 /// States every part of a state to `visit`, which reads or writes it.
@@ -27,6 +27,7 @@ void visit_state(StateType& s, const Visit& visit) {
   visit(s.stuck);
   visit(s.history);
   visit(s.pads);
+  visit(s.lightness);
   for (auto& value : s.work) visit(value);
   auto& r = s.record;
   for (auto* value : {&r.fibre_strain, &r.fibre_compression, &r.actuator_force, &r.link_error, &r.penetration,

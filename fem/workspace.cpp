@@ -1,5 +1,7 @@
 #include "fem/workspace.hpp"
 
+#include <stdexcept>
+
 // Entry 0 is the shell's: it always has forces and moments.
 namespace drapeplan {
 namespace {
@@ -19,17 +21,18 @@ void set(VectorField& field, size_t n, const Eigen::Vector3d& value) {
 }  // namespace
 
 StepScratch::StepScratch(const Model& model)
-    : others(model.node_count()),
-      sum(model.node_count()),
-      sections(model.shell().section_count()),
-      lightness(padded(model.node_count())) {}
+    : others(model.node_count()), sum(model.node_count()), sections(model.shell().section_count()) {}
 
 Workspace::Workspace(const Model& model)
     : mean_v(model.node_count()), mean_w(model.node_count()), step(model) {
   for (const auto& term : model.terms()) {
     first.push_back(entries.size());
-    for (Forces& entry : term->entries()) entries.push_back(std::move(entry));
+    for (Forces& entry : term->entries()) {
+      if (!entries.empty() && !entry.moment.x.empty()) turning.push_back(entries.size());
+      entries.push_back(std::move(entry));
+    }
   }
+  if (entries.size() > kMostEntries) throw std::logic_error("more entries of forces than kMostEntries");
   if (model.rig()) rig = model.rig()->scratch();
 }
 
@@ -38,24 +41,40 @@ void compute_forces(const Model& model, State& state, Workspace& work) {
     model.terms()[k]->forces(state, &work.entries[work.first[k]]);
 }
 
+// One pass over the nodes: forces are summed, velocities kicked and the work of every entry on free nodes
+// booked, with the mean of both velocities. Held nodes move by other rules and are booked with theirs.
 void kick_nodes(const Model& model, State& state, Workspace& work) {
   const double h = state.kick_time(), alpha = model.alpha();
   const Lanes keep((1 - 0.5 * alpha * h) / (1 + 0.5 * alpha * h)), gain(h / (1 + 0.5 * alpha * h)), half(0.5);
+  const Lanes zero(0.0);
+  const size_t count = work.entries.size();
+  std::array<Lanes, kMostEntries> power;
+  std::array<Vec3<Lanes>, kMostEntries> forces;
+  power.fill(zero);
+  Lanes damping(0.0);
   for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
-    Vec3<Lanes> force = work.entries[0].force.lanes(n), moment = work.entries[0].moment.lanes(n);
-    for (size_t k = 1; k < work.entries.size(); ++k) {
-      force = force + work.entries[k].force.lanes(n);
-      if (!work.entries[k].moment.x.empty()) moment = moment + work.entries[k].moment.lanes(n);
-    }
+    Vec3<Lanes> force = forces[0] = work.entries[0].force.lanes(n);
+    for (size_t k = 1; k < count; ++k) force = force + (forces[k] = work.entries[k].force.lanes(n));
+    Vec3<Lanes> moment = work.entries[0].moment.lanes(n);
+    for (const size_t k : work.turning) moment = moment + work.entries[k].moment.lanes(n);
     const Vec3<Lanes> v = state.v.lanes(n), w = state.w.lanes(n), d = state.d.lanes(n);
-    const Vec3<Lanes> v_new = keep * v + (gain * load(&model.inverse_mass()[n])) * force;
+    const Lanes mobility = load(&model.inverse_mass()[n]), turning = load(&model.inverse_inertia()[n]);
+    const Vec3<Lanes> v_new = keep * v + (gain * mobility) * force;
     moment = moment - dot(moment, d) * d;  // a director cannot be stretched
-    const Vec3<Lanes> w_new = keep * w + (gain * load(&model.inverse_inertia()[n])) * moment;
-    work.mean_v.set_lanes(n, half * (v + v_new));
-    work.mean_w.set_lanes(n, half * (w + w_new));
+    const Vec3<Lanes> w_new = keep * w + (gain * turning) * moment;
     state.v.set_lanes(n, v_new);
     state.w.set_lanes(n, w_new);
+    Lanes free = half, free_turning = half;
+    stdx::where(mobility == zero, free) = zero;
+    stdx::where(turning == zero, free_turning) = zero;
+    const Vec3<Lanes> mean_v = free * (v + v_new), mean_w = free_turning * (w + w_new);
+    for (size_t k = 0; k < count; ++k) power[k] += dot(forces[k], mean_v);
+    power[0] += dot(work.entries[0].moment.lanes(n), mean_w);
+    for (const size_t k : work.turning) power[k] += dot(work.entries[k].moment.lanes(n), mean_w);
+    damping += load(&model.mass()[n]) * dot(mean_v, mean_v) + load(&model.inertia()[n]) * dot(mean_w, mean_w);
   }
+  for (size_t k = 0; k < count; ++k) work.power[k] = stdx::reduce(power[k]);
+  work.damping = alpha * stdx::reduce(damping);
 }
 
 void kick_pads(const Model& model, State& state, const RigDrive& drive, Workspace& work) {
@@ -78,26 +97,17 @@ void kick_pads(const Model& model, State& state, const RigDrive& drive, Workspac
 
 void book_work(const Model& model, State& state, const Workspace& work) {
   const double h = state.kick_time();
-  const auto nodes = size_t(model.node_count());
-  for (const Forces& entry : work.entries) {
-    Lanes power(0.0);
-    for (size_t n = 0; n < nodes; n += size_t(kLanes)) {
-      power += dot(entry.force.lanes(n), work.mean_v.lanes(n));
+  for (size_t k = 0; k < work.entries.size(); ++k) {
+    const Forces& entry = work.entries[k];
+    double power = work.power[k];
+    for (const int node : model.guided()) {
+      const auto n = size_t(node);
+      power += at(entry.force, n).dot(at(work.mean_v, n));
+      if (!entry.moment.x.empty()) power += at(entry.moment, n).dot(at(work.mean_w, n));
     }
-    if (!entry.moment.x.empty()) {
-      for (size_t n = 0; n < nodes; n += size_t(kLanes))
-        power += dot(entry.moment.lanes(n), work.mean_w.lanes(n));
-    }
-    state.work[size_t(entry.book)] += h * stdx::reduce(power);
+    state.work[size_t(entry.book)] += h * power;
   }
-  if (model.alpha() > 0) {
-    Lanes power(0.0);
-    for (size_t n = 0; n < nodes; n += size_t(kLanes)) {
-      const Vec3<Lanes> v = work.mean_v.lanes(n), w = work.mean_w.lanes(n);
-      power += load(&model.mass()[n]) * dot(v, v) + load(&model.inertia()[n]) * dot(w, w);
-    }
-    state.work[size_t(Book::damping)] -= h * model.alpha() * stdx::reduce(power);
-  }
+  state.work[size_t(Book::damping)] -= h * work.damping;
 }
 
 void drift_nodes(const Model& model, State& state) {

@@ -1,6 +1,7 @@
 // Scratch of one run: may be thrown away at any step without changing a bit.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "fem/model.hpp"
@@ -11,17 +12,21 @@ namespace drapeplan {
 struct StepScratch {
   explicit StepScratch(const Model& model);
 
-  NodalStiffness others, sum;     ///< of all terms but the ply; of all
-  std::vector<double> sections;   ///< see Shell::look_at_sections
-  std::vector<double> lightness;  ///< of nodes [padded]
+  NodalStiffness others, sum;    ///< of all terms but the ply; of all
+  std::vector<double> sections;  ///< see Shell::look_at_sections
 };
+
+inline constexpr size_t kMostEntries = 8;  ///< of forces: a scene has one or two per term
 
 struct Workspace {
   explicit Workspace(const Model& model);
 
-  std::vector<Forces> entries;  ///< of all terms, in order
-  std::vector<size_t> first;    ///< entry of each term
-  VectorField mean_v, mean_w;   ///< means of the half-step velocities
+  std::vector<Forces> entries;               ///< of all terms, in order
+  std::vector<size_t> first;                 ///< entry of each term
+  std::vector<size_t> turning;               ///< entries with moments, but for the shell's
+  std::array<double, kMostEntries> power{};  ///< of entries on free nodes [W]
+  double damping = 0;                        ///< power that mass damping takes from free nodes [W]
+  VectorField mean_v, mean_w;                ///< means of the half-step velocities of guided nodes
   StepScratch step;
   RigScratch rig;
 };

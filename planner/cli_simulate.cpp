@@ -59,7 +59,8 @@ void finish_run(const SimulateOptions& options, const Model& model, const RunRes
   if (!options.save.empty()) save_state(options.save, model, run.state);
   if (run.report.status == RunStatus::diverged) return;
   StepScratch scratch(model);
-  const double estimate = stable_step(model, run.state, scratch), limit = true_stable_step(model, run.state);
+  State state = run.state;
+  const double estimate = stable_step(model, state, scratch), limit = true_stable_step(model, run.state);
   result["stable_step"] = {
       {"estimate", finite(estimate)}, {"true", finite(limit)}, {"share", finite(estimate / limit)}};
 }
