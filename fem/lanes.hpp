@@ -38,6 +38,15 @@ inline Lanes shifted_up(const Lanes& value) {
 #endif
 }
 
+/// Entry k of a table for k = place cut to a whole number, not below 0.
+inline Lanes load_entries(const double* table, const Lanes& place) {
+#if defined(__AVX512F__)
+  return Lanes(_mm512_i32gather_pd(_mm512_cvttpd_epi32(static_cast<__m512d>(place)), table, sizeof(double)));
+#else
+  return Lanes([&](auto l) { return table[size_t(int(place[size_t(l)]))]; });
+#endif
+}
+
 /// Entries 2k and 2k + 1 of a table for k = place cut to a whole number, not below 0; faster than lane by
 /// lane.
 inline void load_pairs(const double* table, const Lanes& place, Lanes& even, Lanes& odd) {

@@ -33,7 +33,7 @@ class Lookup {
   [[nodiscard]] Lanes steepest_near(const Lanes& at) const {
     namespace stdx = std::experimental;
     const Lanes place = stdx::clamp((at - Lanes(lower_)) * Lanes(per_step_), Lanes(0.0), Lanes(last_));
-    return Lanes([&](auto l) { return steepest_[size_t(int(place[size_t(l)]))]; });
+    return load_entries(steepest_.data(), place);
   }
   static constexpr int kLookAhead = 2;
   /// Integral of the function from 0 to `at`.

@@ -158,8 +158,8 @@ void Model::add_contact(NodalStiffness& stiffness) {
   NodalStiffness slow(node_count());
   shell_->add_slow_stiffness(slow);
   const double highest = contact_rise(options) * 2 / stable_dt(slow);
-  ContactSprings springs{slow.translation, std::vector<double>(n)};
-  for (double& k : springs.stiffness) k *= options.contact_stiffness;
+  ContactSprings springs{std::vector<double>(n), std::vector<double>(n)};
+  for (size_t k = 0; k < n; ++k) springs.stiffness[k] = options.contact_stiffness * slow.translation[k];
   for (const int node : rig_ ? rig_->tied() : std::vector<int>()) {
     const auto k = size_t(node);
     const double surplus = bearing_mass_[k] - own_mass_[k];

@@ -64,8 +64,8 @@ class RateLookup {
     Lanes slow0, slow1, fast0, fast1;
     gather(at, slow0, slow1, fast0, fast1);
     const Lanes by_rate = (fast0 - slow0) + (fast1 - slow1) * strain;  // per interval of y
-    const Lanes slow([&](auto l) { return steepest_[size_t(at.index[size_t(l)])]; });
-    const Lanes fast([&](auto l) { return steepest_[size_t(at.index[size_t(l)]) + pieces_]; });
+    const Lanes slow = load_entries(steepest_.data(), at.index);
+    const Lanes fast = load_entries(steepest_.data() + pieces_, at.index);
     return slow + at.share * (fast - slow) +
            std::experimental::abs(by_rate) * Lanes(per_rate_step_) * gain / (Lanes(1.0) + growth);
   }

@@ -256,6 +256,15 @@ struct AcrossRule<2> {
   static constexpr std::array<double, 2> place{0.57735026918962576, -0.57735026918962576};
 };
 
+/// Calls f with the constants 0 to K - 1.
+template <size_t K, class F>
+constexpr void unroll(const F& f) {
+  [&f]<size_t... I>(std::index_sequence<I...>) {
+    (f(std::integral_constant<size_t, I>()), ...);
+  }
+  (std::make_index_sequence<K>());
+}
+
 /// Slot of a fibre's strain in the law: 3 per section point, and behind them those of further points across.
 template <int N>
 constexpr size_t fibre_slot(size_t section_point, size_t fibre, size_t across) {
@@ -272,75 +281,111 @@ struct SectionForces {
   V across;                               ///< of points across: on hx.hx
 };
 
-/// A fibre at both points across at mid-thickness.
-template <int A, class V, class Law>
-void add_points_across(const V& place, const V& weight, const V& aa, const V& ah, const V& hh, size_t fibre,
-                       size_t first_slot, size_t next_slot, Law& law, FibreViscosity<V, A>& viscosity,
-                       V& stress_sum, V& uneven, V& across) {
-  const V share = V(1.0 / A) * weight, side = V(2.0) * place * ah, bent = place * place * hh;
-  V force[2];
-  for (size_t a = 0; a < 2; ++a) {
-    V length, inverse;
-    root_and_inverse(a == 0 ? V(aa + bent + side) : V(aa + bent - side), length, inverse);
-    const V e = length - V(1.0);
-    V& before = viscosity.strain[2 * a + fibre];
-    const V stress = law.fibre(e, a == 0 ? first_slot : next_slot) + viscosity.modulus[fibre] * (e - before);
-    before = e;
-    force[a] = share * stress * inverse;
-  }
-  stress_sum += force[0] + force[1];
-  uneven = place * (force[0] - force[1]);
-  across += place * place * (force[0] + force[1]);
-}
+/// Places where fibres are looked at: per section point one per fibre, and at mid-thickness A across each.
+template <int N, int A>
+inline constexpr size_t kFibrePlaces = 2 * (size_t(N) - 1 + size_t(A));
 
-/// Adds section point K of N.
-template <size_t K, int N, int A, class V, class Law>
-void add_section_point(const ElementGeometry<V>& g, const KernelMaterial& material,
-                       const MotionProducts<V>& m, Law& law, FibreViscosity<V, A>& viscosity,
-                       SectionForces<V>& sum) {
-  constexpr bool kMiddle = 2 * K + 1 == size_t(N);
-  const V s(SectionRule<N>::place[K] * material.thickness), w(SectionRule<N>::weight[K] * material.thickness);
-  V f11 = m.a11, f22 = m.a22, f12 = m.a12;
-  if constexpr (!kMiddle) {
-    f11 += s * (V(2.0) * m.b11 + s * m.c11);
-    f22 += s * (V(2.0) * m.b22 + s * m.c22);
-    f12 += s * (m.b12 + m.b21 + s * m.c12);
-  }
-  V length1, length2, inverse1, inverse2;
-  root_and_inverse(f11, length1, inverse1);
-  root_and_inverse(f22, length2, inverse2);
-  const V sine = f12 * inverse1 * inverse2;
-  const V shear = w * law.shear(sine, 3 * K + 2), turned = shear * sine;
-  V on1 = -(turned * inverse1 * inverse1), on2 = -(turned * inverse2 * inverse2);
-  if constexpr (kMiddle && A == 2) {
-    const V place(AcrossRule<2>::place[0]);
-    add_points_across<A>(V(place * g.across1), w, m.a11, m.a1h, m.hh, 0, fibre_slot<N>(K, 0, 0),
-                         fibre_slot<N>(K, 0, 1), law, viscosity, on1, sum.uneven1, sum.across);
-    add_points_across<A>(V(place * g.across2), w, m.a22, m.a2h, m.hh, 1, fibre_slot<N>(K, 1, 0),
-                         fibre_slot<N>(K, 1, 1), law, viscosity, on2, sum.uneven2, sum.across);
-  } else {
-    const V e1 = length1 - V(1.0), e2 = length2 - V(1.0);
-    V t1 = law.fibre(e1, 3 * K), t2 = law.fibre(e2, 3 * K + 1);
-    if constexpr (kMiddle) {
-      t1 += viscosity.modulus[0] * (e1 - viscosity.strain[0]);
-      t2 += viscosity.modulus[1] * (e2 - viscosity.strain[1]);
-      viscosity.strain[0] = e1;
-      viscosity.strain[1] = e2;
+/// Adds what all section points do. In stages, each for all places: their chains of roots and of lookups are
+/// long, and side by side they fill the pipes.
+template <int N, int A, class V, class Law>
+void add_section(const ElementGeometry<V>& g, const KernelMaterial& material, const MotionProducts<V>& m,
+                 Law& law, FibreViscosity<V, A>& viscosity, SectionForces<V>& sum) {
+  constexpr size_t kPoints = size_t(N), kMiddle = kPoints / 2, kPlaces = kFibrePlaces<N, A>;
+  constexpr bool kAcross = A == 2;
+  const V one(1.0);
+  const std::array<V, 2> across{V(AcrossRule<2>::place[0]) * g.across1,
+                                V(AcrossRule<2>::place[0]) * g.across2};
+  // Stretches squared: by section point and fibre, the middle one's points across at the end.
+  std::array<V, 2 * kPoints> square, length, inverse;
+  std::array<V, kPoints> sine, shear;
+  std::array<V, kPlaces> stress, stretch, unit;
+  unroll<kPoints>([&](auto k) {
+    const V s(SectionRule<N>::place[k] * material.thickness);
+    square[2 * k] = m.a11;
+    square[2 * k + 1] = m.a22;
+    sine[k] = m.a12;
+    if constexpr (k != kMiddle) {
+      square[2 * k] += s * (V(2.0) * m.b11 + s * m.c11);
+      square[2 * k + 1] += s * (V(2.0) * m.b22 + s * m.c22);
+      sine[k] += s * (m.b12 + m.b21 + s * m.c12);
     }
-    on1 += w * t1 * inverse1;
-    on2 += w * t2 * inverse2;
-  }
-  const V both = shear * inverse1 * inverse2;
-  const auto add = [&s](const V& value, std::array<V, 3>& powers) {
-    powers[0] += value;
-    if constexpr (kMiddle) return;
-    const V once = s * value;
-    powers[1] += once;
-    powers[2] += s * once;
+  });
+  unroll<2 * kPoints>([&](auto k) { root_and_inverse(square[k], length[k], inverse[k]); });
+  const auto place_of = [](size_t k, size_t fibre) {
+    return 2 * (k > kMiddle && kAcross ? k - 1 : k) + fibre;
   };
-  add(on1, sum.fibre1);
-  add(on2, sum.fibre2);
-  add(both, sum.both);
+  const auto across_place = [](size_t fibre, size_t a) { return 2 * (kPoints - 1) + 2 * fibre + a; };
+  unroll<2 * kPoints>([&](auto k) {
+    if constexpr (!kAcross || k / 2 != kMiddle) {
+      stretch[place_of(k / 2, k % 2)] = length[k];
+      unit[place_of(k / 2, k % 2)] = inverse[k];
+    }
+  });
+  if constexpr (kAcross) {
+    unroll<2>([&](auto fibre) {
+      const V& aa = fibre == 0 ? m.a11 : m.a22;
+      const V side = V(2.0) * across[fibre] * (fibre == 0 ? m.a1h : m.a2h);
+      const V bent = aa + across[fibre] * across[fibre] * m.hh;
+      const size_t first = across_place(fibre, 0), second = across_place(fibre, 1);
+      root_and_inverse(V(bent + side), stretch[first], unit[first]);
+      root_and_inverse(V(bent - side), stretch[second], unit[second]);
+    });
+  }
+
+  unroll<kPoints>([&](auto k) {
+    sine[k] = sine[k] * inverse[2 * k] * inverse[2 * k + 1];
+    shear[k] = law.shear(sine[k], 3 * k + 2);
+    if constexpr (!kAcross || k != kMiddle) {
+      unroll<2>([&](auto fibre) {
+        const size_t at = place_of(k, fibre);
+        stress[at] = law.fibre(V(stretch[at] - one), 3 * k + fibre);
+      });
+    }
+  });
+  unroll<2>([&](auto fibre) {
+    unroll<size_t(A)>([&](auto a) {
+      const size_t at = kAcross ? across_place(fibre, a) : place_of(kMiddle, fibre);
+      const V e = stretch[at] - one;
+      V& before = viscosity.strain[2 * a + fibre];
+      if constexpr (kAcross) stress[at] = law.fibre(e, fibre_slot<N>(kMiddle, fibre, a));
+      stress[at] += viscosity.modulus[fibre] * (e - before);
+      before = e;
+    });
+  });
+
+  unroll<kPoints>([&](auto k) {
+    const V s(SectionRule<N>::place[k] * material.thickness),
+        w(SectionRule<N>::weight[k] * material.thickness);
+    const V &inverse1 = inverse[2 * k], &inverse2 = inverse[2 * k + 1];
+    const V turning = w * shear[k], turned = turning * sine[k];
+    V on1 = -(turned * inverse1 * inverse1), on2 = -(turned * inverse2 * inverse2);
+    const V both = turning * inverse1 * inverse2;
+    if constexpr (kAcross && k == kMiddle) {
+      const V half = V(0.5) * w;
+      unroll<2>([&](auto fibre) {
+        const size_t first = across_place(fibre, 0), second = across_place(fibre, 1);
+        const V p = half * stress[first] * unit[first], q = half * stress[second] * unit[second];
+        const V total = p + q;
+        (fibre == 0 ? on1 : on2) += total;
+        (fibre == 0 ? sum.uneven1 : sum.uneven2) = across[fibre] * (p - q);
+        sum.across += across[fibre] * across[fibre] * total;
+      });
+    } else {
+      on1 += w * stress[place_of(k, 0)] * inverse1;
+      on2 += w * stress[place_of(k, 1)] * inverse2;
+    }
+    const auto add = [&](const V& value, std::array<V, 3>& powers) {
+      powers[0] += value;
+      if constexpr (k != kMiddle) {
+        const V once = s * value;
+        powers[1] += once;
+        powers[2] += s * once;
+      }
+    };
+    add(on1, sum.fibre1);
+    add(on2, sum.fibre2);
+    add(both, sum.both);
+  });
 }
 
 /// Forces that the element exerts on its corners: on positions [N] and on directors [N m].
@@ -353,10 +398,7 @@ void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, L
   const MotionProducts<V> products = motion_products(m);
   const V zero(0.0);
   SectionForces<V> f{{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}, zero, zero, zero};
-  [&]<size_t... K>(std::index_sequence<K...>) {
-    (add_section_point<K, N, A>(g, material, products, law, viscosity, f), ...);
-  }
-  (std::make_index_sequence<size_t(N)>());
+  add_section<N, A>(g, material, products, law, viscosity, f);
 
   const TransverseShear<V> q = transverse_shear<kRectangle>(g, products, V(material.transverse));
   V on11 = f.fibre1[1], on22 = f.fibre2[1];

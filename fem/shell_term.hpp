@@ -122,7 +122,7 @@ class ShellTerm final : public Shell {
     add_steepest(material_.fibre.largest_slope(), slow_shear_slope_, stiffness);
   }
 
-  void look_at_sections(const State& state, std::vector<double>& sections) const override {
+  DRAPEPLAN_FLATTEN void look_at_sections(const State& state, std::vector<double>& sections) const override {
     const Rows<const double> x(state.x), d(state.d);
     double* at = sections.data();
     for (size_t b = 0; b < blocks_.size(); ++b) {
@@ -139,8 +139,8 @@ class ShellTerm final : public Shell {
 
   [[nodiscard]] size_t section_count() const override { return 12 * slot_stride(); }
 
-  void add_bounds(const std::vector<double>& sections, const std::vector<double>& lightness,
-                  NodalStiffness& stiffness) const override {
+  DRAPEPLAN_FLATTEN void add_bounds(const std::vector<double>& sections, const std::vector<double>& lightness,
+                                    NodalStiffness& stiffness) const override {
     const double* at = sections.data();
     for (const Block& block : blocks_) {
       const ElementGeometry<Lanes>& g = geometries_[block.geometry];

@@ -33,7 +33,11 @@ Workspace::Workspace(const Model& model)
     }
   }
   if (entries.size() > kMostEntries) throw std::logic_error("more entries of forces than kMostEntries");
-  if (model.rig()) rig = model.rig()->scratch();
+  has_tied.assign(padded(model.node_count()) / size_t(kLanes), false);
+  if (!model.rig()) return;
+  rig = model.rig()->scratch();
+  force = moment = VectorField(model.node_count());
+  for (const int node : model.rig()->tied()) has_tied[size_t(node / kLanes)] = true;
 }
 
 void compute_forces(const Model& model, State& state, Workspace& work) {
@@ -57,6 +61,10 @@ void kick_nodes(const Model& model, State& state, Workspace& work) {
     for (size_t k = 1; k < count; ++k) force = force + (forces[k] = work.entries[k].force.lanes(n));
     Vec3<Lanes> moment = work.entries[0].moment.lanes(n);
     for (const size_t k : work.turning) moment = moment + work.entries[k].moment.lanes(n);
+    if (work.has_tied[n / size_t(kLanes)]) {
+      work.force.set_lanes(n, force);
+      work.moment.set_lanes(n, moment);
+    }
     const Vec3<Lanes> v = state.v.lanes(n), w = state.w.lanes(n), d = state.d.lanes(n);
     const Lanes mobility = load(&model.inverse_mass()[n]), turning = load(&model.inverse_inertia()[n]);
     const Vec3<Lanes> v_new = keep * v + (gain * mobility) * force;
@@ -81,12 +89,8 @@ void kick_pads(const Model& model, State& state, const RigDrive& drive, Workspac
   const std::vector<int>& tied = model.rig()->tied();
   for (size_t k = 0; k < tied.size(); ++k) {
     const auto n = size_t(tied[k]);
-    work.rig.force[k] = at(work.entries[0].force, n);
-    work.rig.moment[k] = at(work.entries[0].moment, n);
-    for (size_t e = 1; e < work.entries.size(); ++e) {
-      work.rig.force[k] += at(work.entries[e].force, n);
-      if (!work.entries[e].moment.x.empty()) work.rig.moment[k] += at(work.entries[e].moment, n);
-    }
+    work.rig.force[k] = at(work.force, n);
+    work.rig.moment[k] = at(work.moment, n);
   }
   model.rig()->kick(state, drive, model.alpha(), work.rig);
   for (size_t k = 0; k < tied.size(); ++k) {
@@ -97,16 +101,15 @@ void kick_pads(const Model& model, State& state, const RigDrive& drive, Workspac
 
 void book_work(const Model& model, State& state, const Workspace& work) {
   const double h = state.kick_time();
-  for (size_t k = 0; k < work.entries.size(); ++k) {
-    const Forces& entry = work.entries[k];
-    double power = work.power[k];
-    for (const int node : model.guided()) {
-      const auto n = size_t(node);
-      power += at(entry.force, n).dot(at(work.mean_v, n));
-      if (!entry.moment.x.empty()) power += at(entry.moment, n).dot(at(work.mean_w, n));
-    }
-    state.work[size_t(entry.book)] += h * power;
+  std::array<double, kMostEntries> power = work.power;
+  for (const int node : model.guided()) {
+    const auto n = size_t(node);
+    const Eigen::Vector3d v = at(work.mean_v, n), w = at(work.mean_w, n);
+    for (size_t k = 0; k < work.entries.size(); ++k) power[k] += at(work.entries[k].force, n).dot(v);
+    power[0] += at(work.entries[0].moment, n).dot(w);
+    for (const size_t k : work.turning) power[k] += at(work.entries[k].moment, n).dot(w);
   }
+  for (size_t k = 0; k < work.entries.size(); ++k) state.work[size_t(work.entries[k].book)] += h * power[k];
   state.work[size_t(Book::damping)] -= h * work.damping;
 }
 

@@ -27,6 +27,8 @@ struct Workspace {
   std::array<double, kMostEntries> power{};  ///< of entries on free nodes [W]
   double damping = 0;                        ///< power that mass damping takes from free nodes [W]
   VectorField mean_v, mean_w;                ///< means of the half-step velocities of guided nodes
+  std::vector<char> has_tied;                ///< by lanes of nodes: some belong to a pad
+  VectorField force, moment;                 ///< of all entries, where has_tied; empty without a rig
   StepScratch step;
   RigScratch rig;
 };
