@@ -12,34 +12,30 @@
 #include <bit>
 #include <cstdint>
 #include <functional>
-#include <numbers>
 #include <vector>
 
 #include "fem/lanes.hpp"
 
 namespace drapeplan {
 
-/// Natural logarithm of normal numbers >= 1, to 2e-7: enough for a place in a table, and without a call per
-/// lane. x = 2^k m, log m = 2 (t + t^3/3 + ...) with t = (m - 1) / (m + 1) <= 1/3.
-inline Lanes log_lanes(const Lanes& x) {
-  alignas(std::experimental::memory_alignment_v<Lanes>) double in[size_t(kLanes)], power[size_t(kLanes)];
-  x.copy_to(in, std::experimental::vector_aligned);
-  for (size_t l = 0; l < size_t(kLanes); ++l) {
-    constexpr int kMantissaBits = 52;
-    constexpr std::int64_t kMantissa = (std::int64_t(1) << kMantissaBits) - 1, kBias = 1023;
-    const auto bits = std::bit_cast<std::int64_t>(in[l]);
-    power[l] = double((bits >> kMantissaBits) - kBias);
-    in[l] = std::bit_cast<double>((bits & kMantissa) | (kBias << kMantissaBits));
-  }
-  const Lanes m(in, std::experimental::vector_aligned), t = (m - Lanes(1.0)) / (m + Lanes(1.0)), t2 = t * t;
-  const Lanes series =
-      Lanes(1.0) +
-      t2 * (Lanes(1.0 / 3) +
-            t2 * (Lanes(1.0 / 5) + t2 * (Lanes(1.0 / 7) + t2 * (Lanes(1.0 / 9) + t2 * Lanes(1.0 / 11)))));
-  return Lanes(power, std::experimental::vector_aligned) * Lanes(std::numbers::ln2) + Lanes(2.0) * t * series;
+/// How many octaves a normal number >= 1 is above 1, linear within each: what its bits say, read as an
+/// integer. A logarithm without its series, good for places in a table whose rows are spaced likewise.
+inline Lanes octaves(const Lanes& x) {
+  constexpr double kPerOctave = double(std::int64_t(1) << 52), kBias = 1023;
+#if defined(__AVX512DQ__)
+  const Lanes bits(_mm512_cvtepi64_pd(_mm512_castpd_si512(static_cast<__m512d>(x))));
+#else
+  const Lanes bits([&](auto l) { return double(std::bit_cast<std::int64_t>(double(x[size_t(l)]))); });
+#endif
+  return bits * Lanes(1 / kPerOctave) - Lanes(kBias);
+}
+/// The number that is so many octaves above 1.
+inline double from_octaves(double y) {
+  const double whole = std::floor(y);
+  return std::ldexp(1 + y - whole, int(whole));
 }
 
-/// A curve per rate, resampled on equal intervals of strain and of y = log(1 + rate / floor), bilinear
+/// A curve per rate, resampled on equal intervals of strain and of y = octaves(1 + rate / floor), bilinear
 /// between; constant beyond the slowest and the fastest curve, last slope beyond the last strain.
 class RateLookup {
  public:
@@ -67,12 +63,17 @@ class RateLookup {
     const Lanes slow = load_entries(steepest_.data(), at.index);
     const Lanes fast = load_entries(steepest_.data() + pieces_, at.index);
     return slow + at.share * (fast - slow) +
-           std::experimental::abs(by_rate) * Lanes(per_rate_step_) * gain / (Lanes(1.0) + growth);
+           std::experimental::abs(by_rate) * Lanes(per_rate_step_) * octave_slope(Lanes(1.0) + growth) * gain;
   }
   /// Largest of these slopes, over all strains of the table and all rates.
   [[nodiscard]] double largest_slope(double gain) const;
 
  private:
+  /// Derivative of octaves().
+  [[nodiscard]] static Lanes octave_slope(const Lanes& x) {
+    const Lanes y = octaves(x);
+    return (Lanes(1.0) + y - std::experimental::floor(y)) / x;
+  }
   struct Place {
     Lanes share;  ///< between the slower and the faster row
     Lanes index;  ///< of the slower row's piece
@@ -80,7 +81,7 @@ class RateLookup {
   [[nodiscard]] Place place(const Lanes& strain, const Lanes& growth) const {
     namespace stdx = std::experimental;
     const Lanes piece = stdx::clamp((strain - Lanes(lower_)) * Lanes(per_step_), Lanes(0.0), Lanes(last_));
-    const Lanes y = stdx::min(log_lanes(Lanes(1.0) + growth) * Lanes(per_rate_step_), Lanes(rows_));
+    const Lanes y = stdx::min(octaves(Lanes(1.0) + growth) * Lanes(per_rate_step_), Lanes(rows_));
     const Lanes row = stdx::min(stdx::floor(y), Lanes(rows_ - 1));
     return {y - row, row * Lanes(double(pieces_)) + stdx::floor(piece)};
   }
@@ -128,7 +129,9 @@ class RateSlopes {
   [[nodiscard]] Lanes shear_gain(const Lanes& sine) const {
     namespace stdx = std::experimental;
     constexpr double kLeastCosine2 = 0.04;  // 78.5 degrees: where the table of the shear stress ends
-    return Lanes(tables_.gain) / stdx::sqrt(stdx::max(Lanes(1.0) - sine * sine, Lanes(kLeastCosine2)));
+    Lanes cosine, inverse;
+    root_and_inverse(stdx::max(Lanes(1.0) - sine * sine, Lanes(kLeastCosine2)), cosine, inverse);
+    return Lanes(tables_.gain) * inverse;
   }
 
   const RateTables& tables_;

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     add_map(program, action);
     add_reach(program, action);
     add_simulate(program, action);
+    add_bench(program, action);
     add_check(program, action);
     add_schema(program, action);
     add_explain(program, action);

@@ -86,15 +86,13 @@ TEST(RateLookup, DiffersFromTheTableByLessThanOnePercentOfTheSpreadOfItsCurves) 
   }
 }
 
-TEST(RateLookup, TakesLogarithmsToTwoParts_In_1e7) {
-  double worst = 0;
+TEST(RateLookup, CountsOctavesLinearlyWithinEachAndBack) {
   for (double x = 1; x < 1e300; x *= 1.00137) {
-    const double got = log_lanes(Lanes(x))[0];
-    worst = std::max(worst, std::abs(got - std::log(x)));
+    const double y = octaves(Lanes(x))[0];
+    EXPECT_LE(std::abs(y - std::log2(x)), 0.0861);  // a chord of the logarithm over an octave
+    EXPECT_LE(std::abs(from_octaves(y) / x - 1), 1e-12);
   }
-  std::printf("log_lanes: largest error %.2e\n", worst);
-  EXPECT_LE(worst, 2e-7);
-  EXPECT_EQ(log_lanes(Lanes(1.0))[0], 0);
+  for (const double k : {0.0, 1.0, 5.0, 900.0}) EXPECT_EQ(octaves(Lanes(std::exp2(k)))[0], k);
 }
 
 /// One square element whose corners are put where a test says, and the stresses that it answers with.

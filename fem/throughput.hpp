@@ -1,0 +1,39 @@
+// How fast the machine and the time step are: figures for benchmarks, one core.
+#pragma once
+
+#include <cstdint>
+
+#include "fem/simulate.hpp"
+
+namespace drapeplan {
+
+/// Multiplications and additions per second that the lanes of one core reach, all operands in registers; the
+/// best of several short runs [1/s].
+double fma_peak();
+
+/// Bytes per second that one core reads and writes in a loop over arrays of so many bytes in all.
+double stream_rate(std::size_t bytes);
+
+/// Floating-point operations of the element kernel per element that is a rectangle, lookups and roots
+/// included (an FMA is two); counted by running it.
+int kernel_flops(int section_points, int fibre_points);
+
+/// Bytes of node and element arrays that a step reads and writes, per element; what stays in caches counts
+/// too.
+double step_bytes(const Model& model);
+
+/// Throughput of whole time steps.
+struct Throughput {
+  double updates_per_second = 0;  ///< of elements, median of the repeats
+  double spread = 0;              ///< (largest - smallest) / median of the repeats
+  std::int64_t steps = 0;         ///< of each repeat
+  std::uint64_t state_hash = 0;   ///< at the end of each repeat
+  bool same_hash = true;          ///< all repeats ended in the same bits
+};
+
+/// Runs the scene to `start` [s, of the schedule] to warm up, and from there `repeats` times the same steps.
+/// @param seconds  that a repeat takes, about.
+Throughput measure_throughput(const Model& model, const Schedule* schedule, double duration, double start,
+                              double seconds, int repeats);
+
+}  // namespace drapeplan

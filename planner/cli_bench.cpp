@@ -1,0 +1,239 @@
+// bench: throughput of named scenes, whole time steps on one core.
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "fem/throughput.hpp"
+#include "planner/cli.hpp"
+#include "planner/drape_problem.hpp"
+#include "planner/parallel.hpp"
+#include "planner/strategy.hpp"
+#include "planner/text.hpp"
+
+namespace drapeplan {
+namespace {
+
+using nlohmann::json;
+
+struct BenchOptions {
+  CommonOptions common;
+  std::string file = "cases/flexdraper-5x5.json";
+  std::vector<std::string> only;
+  int repeats = 5;
+  double seconds = 0.5;
+};
+
+enum class Kind { free_sheet, sheet_on_mold, drape };
+
+struct BenchScene {
+  std::string name;
+  Kind kind = Kind::drape;
+  double mesh_size = 0.005;
+  int section_points = 3;
+  bool rates = false;
+};
+
+std::vector<BenchScene> bench_scenes() {
+  return {{"free-sheet-5mm", Kind::free_sheet},
+          {"sheet-on-mold-5mm", Kind::sheet_on_mold},
+          {"drape-10mm", Kind::drape, 0.010},
+          {"drape-5mm", Kind::drape},
+          {"drape-2.5mm", Kind::drape, 0.0025},
+          {"drape-5mm-1-point", Kind::drape, 0.005, 1},
+          {"drape-5mm-5-points", Kind::drape, 0.005, 5},
+          {"drape-5mm-rates", Kind::drape, 0.005, 3, true},
+          {"drape-5mm-5-points-rates", Kind::drape, 0.005, 5, true}};
+}
+
+double highest(const Mold& mold) {
+  constexpr int kSamples = 200;  // per side
+  double top = -1e300;
+  const Extent& extent = mold.extent();
+  for (int i = 0; i <= kSamples; ++i) {
+    for (int j = 0; j <= kSamples; ++j) {
+      const Eigen::Vector2d share(double(i) / kSamples, double(j) / kSamples);
+      const Eigen::Vector2d at = extent.lower + share.cwiseProduct(extent.upper - extent.lower);
+      top = std::max(top, mold.height(at.x(), at.y()));
+    }
+  }
+  return top;
+}
+
+Model model_of(const Case& value, const BenchScene& bench) {
+  FemOptions options = value.fidelities.at("report");
+  options.mesh_size = bench.mesh_size;
+  options.section_points = bench.section_points;
+  options.rates = bench.rates;
+  Scene scene = scene_of(value, options);
+  if (bench.kind != Kind::drape) {
+    scene.rig.reset();
+    scene.start_height = highest(*scene.mold) + scene.fabric.thickness;
+  }
+  if (bench.kind == Kind::free_sheet) {
+    scene.mold.reset();
+    scene.friction.reset();
+  }
+  return Model(std::move(scene));
+}
+
+/// Throughput of as many candidates side by side, which share the model, over that of one.
+double side_by_side(const Model& model, const Schedule& schedule, double start, const BenchOptions& options,
+                    int candidates, double one) {
+  std::vector<double> rate(size_t(candidates), 0.0);
+  parallel_for(
+      candidates,
+      [&](int k) {
+        rate[size_t(k)] = measure_throughput(model, &schedule, 0, start, options.seconds, options.repeats)
+                              .updates_per_second;
+      },
+      candidates);
+  double sum = 0;
+  for (const double value : rate) sum += value;
+  return sum / one;
+}
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+std::string csv(const json& result) {
+  std::string text =
+      "machine,scene,mesh_size_m,section_points,rates,precision,elements,Mupdates_per_s,Mupdates_per_s_per_"
+      "GFLOPps,"
+      "spread,state_hash\n";
+  for (const json& s : result["scenes"]) {
+    char line[400];
+    std::snprintf(line, sizeof line, "%s,%s,%g,%d,%d,double,%d,%.2f,%.4f,%.3f,%s\n",
+                  result["machine"]["processor"].get<std::string>().c_str(),
+                  s["name"].get<std::string>().c_str(), s["mesh_size"].get<double>(),
+                  s["section_points"].get<int>(), int(s["rates"].get<bool>()), s["elements"].get<int>(),
+                  1e-6 * s["element_updates_per_second"].get<double>(),
+                  1e-6 * s["updates_per_second_per_gflops"].get<double>(), s["spread"].get<double>(),
+                  s["state_hash"].get<std::string>().c_str());
+    text += line;
+  }
+  return text;
+}
+
+json scene_json(const BenchScene& bench, const Model& model, const Throughput& measured, double peak) {
+  char hash[20];
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(measured.state_hash));
+  const int flops = kernel_flops(bench.section_points, model.scene().options.fibre_points);
+  return {{"name", bench.name},
+          {"mesh_size", bench.mesh_size},
+          {"section_points", bench.section_points},
+          {"rates", bench.rates},
+          {"precision", "double"},
+          {"elements", model.scene().mesh.element_count()},
+          {"nodes", model.node_count()},
+          {"steps", measured.steps},
+          {"element_updates_per_second", measured.updates_per_second},
+          {"updates_per_second_per_gflops", measured.updates_per_second / (1e-9 * peak)},
+          {"spread", measured.spread},
+          {"kernel_flops_per_update", flops},
+          {"bytes_per_update", step_bytes(model)},
+          {"share_of_peak", flops * measured.updates_per_second / peak},
+          {"state_hash", hash},
+          {"same_hash_in_all_repeats", measured.same_hash}};
+}
+
+int bench(const BenchOptions& options) {
+  const std::optional<Case> value =
+      load_case(options.file, options.common, {"mapping", "grippers", "material", "mold"});
+  if (!value) return kInputWrong;
+  std::vector<BenchScene> scenes = bench_scenes();
+  for (const std::string& name : options.only) {
+    const auto known = [&name](const BenchScene& scene) { return scene.name == name; };
+    if (std::none_of(scenes.begin(), scenes.end(), known)) {
+      std::cerr << "bench: --scene: there is no scene \"" << name << "\"; there are";
+      for (const BenchScene& scene : scenes) std::cerr << ' ' << scene.name;
+      std::cerr << '\n';
+      return kInputWrong;
+    }
+  }
+  const DrapeProblem problem(*value);
+  const Schedule schedule = to_schedule(problem.frame(), uniform_strokes(problem.frame()));
+  constexpr double kStart = 0.05;  // of the schedule [s]: warm, and every scene still moves freely
+  constexpr double kEnd = 10;      // of the scenes without grippers [s]
+  json result;
+  const double peak = fma_peak();
+  constexpr size_t kSmall = 16 << 10, kMiddle = 512 << 10, kLarge = 256 << 20;
+  result["machine"] = {{"processor", processor()},
+                       {"lanes", kLanes},
+                       {"fma_peak_gflops", 1e-9 * peak},
+                       {"stream_16KiB_GBps", 1e-9 * stream_rate(kSmall)},
+                       {"stream_512KiB_GBps", 1e-9 * stream_rate(kMiddle)},
+                       {"stream_256MiB_GBps", 1e-9 * stream_rate(kLarge)}};
+  result["scenes"] = json::array();
+  char line[300];
+  std::snprintf(
+      line, sizeof line,
+      "%s, %d lanes of double: %.1f GFLOP/s; streams %.0f, %.0f, %.0f GB/s (16 KiB, 512 KiB, 256 MiB)\n\n"
+      "%-26s %9s %9s %12s %8s %9s %9s\n",
+      processor().c_str(), kLanes, 1e-9 * peak, result["machine"]["stream_16KiB_GBps"].get<double>(),
+      result["machine"]["stream_512KiB_GBps"].get<double>(),
+      result["machine"]["stream_256MiB_GBps"].get<double>(), "scene", "elements", "M/s", "M/s per GF/s",
+      "spread", "of peak", "GB/s");
+  std::string text = line;
+  bool same = true;
+  for (const BenchScene& bench : scenes) {
+    if (!options.only.empty() &&
+        std::find(options.only.begin(), options.only.end(), bench.name) == options.only.end())
+      continue;
+    if (!options.common.quiet) std::cerr << bench.name << " ...\n";
+    const Model model = model_of(*value, bench);
+    const bool drape = bench.kind == Kind::drape;
+    const double peak_now = fma_peak();  // the clock may have changed
+    const Throughput measured = measure_throughput(model, drape ? &schedule : nullptr, drape ? 0 : kEnd,
+                                                   kStart, options.seconds, options.repeats);
+    json entry = scene_json(bench, model, measured, peak_now);
+    same = same && measured.same_hash;
+    std::snprintf(line, sizeof line, "%-26s %9d %9.2f %12.3f %7.1f%% %8.1f%% %9.1f\n", bench.name.c_str(),
+                  model.scene().mesh.element_count(), 1e-6 * measured.updates_per_second,
+                  1e-6 * measured.updates_per_second / (1e-9 * peak_now), 1e2 * measured.spread,
+                  1e2 * entry["share_of_peak"].get<double>(),
+                  1e-9 * measured.updates_per_second * entry["bytes_per_update"].get<double>());
+    text += line;
+    if (bench.name == "drape-5mm") {
+      const double two = side_by_side(model, schedule, kStart, options, 2, measured.updates_per_second);
+      entry["two_side_by_side"] = two;
+      std::snprintf(line, sizeof line, "%-26s %9s %9.2f times the throughput of one\n", "  two on two cores",
+                    "", two);
+      text += line;
+    }
+    result["scenes"].push_back(std::move(entry));
+  }
+  const int code = deliver(result, text, options.common, &*value);
+  if (!options.common.out.empty())
+    write_text(std::filesystem::path(options.common.out) / "bench.csv", csv(result));
+  if (!same) {
+    std::cerr << "bench: repeats of a scene ended in different states\n";
+    return kBug;
+  }
+  return code;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& program, Action& action) {
+  CLI::App* verb =
+      program.add_subcommand("bench", "throughput of whole time steps in named scenes, on one core");
+  const auto options = std::make_shared<BenchOptions>();  // lives as long as CLI11 keeps the callback
+  verb->add_option("CASE", options->file, "case with mold and grippers (default: cases/flexdraper-5x5.json)");
+  add_common_options(*verb, options->common);
+  verb->add_option("--scene", options->only, "only these scenes (repeatable)");
+  verb->add_option("--repeats", options->repeats, "of each scene; the median counts (default: 5)")
+      ->check(CLI::Range(1, 1000));
+  verb->add_option("--seconds", options->seconds, "that a repeat takes, about (default: 0.5)")
+      ->check(CLI::Range(0.001, 1000.0));
+  verb->callback([&action, options] { action = [options] { return bench(*options); }; });
+}
+
+}  // namespace drapeplan
