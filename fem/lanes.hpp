@@ -11,6 +11,16 @@
 #include <memory>
 #include <vector>
 
+// Kernels are inlined as a whole, so that lanes stay in registers. Sanitizers need many minutes for that and
+// gain nothing.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define DRAPEPLAN_FLATTEN
+#define DRAPEPLAN_INLINE
+#else
+#define DRAPEPLAN_FLATTEN [[gnu::flatten]]
+#define DRAPEPLAN_INLINE [[gnu::always_inline]]
+#endif
+
 namespace drapeplan {
 
 using Lanes = std::experimental::native_simd<double>;
@@ -21,15 +31,15 @@ inline size_t padded(int count) {
   return size_t((count + kLanes - 1) / kLanes + 1) * size_t(kLanes);
 }
 
-inline Lanes load(const double* at) {
+DRAPEPLAN_INLINE inline Lanes load(const double* at) {
   return Lanes(at, std::experimental::element_aligned);
 }
-inline void store(const Lanes& value, double* at) {
+DRAPEPLAN_INLINE inline void store(const Lanes& value, double* at) {
   value.copy_to(at, std::experimental::element_aligned);
 }
 
 /// Every value one lane further; zero in the first.
-inline Lanes shifted_up(const Lanes& value) {
+DRAPEPLAN_INLINE inline Lanes shifted_up(const Lanes& value) {
 #if defined(__AVX512F__)
   return Lanes(_mm512_castsi512_pd(_mm512_alignr_epi64(_mm512_castpd_si512(static_cast<__m512d>(value)),
                                                        _mm512_setzero_si512(), kLanes - 1)));
@@ -39,7 +49,7 @@ inline Lanes shifted_up(const Lanes& value) {
 }
 
 /// Entry k of a table for k = place cut to a whole number, not below 0.
-inline Lanes load_entries(const double* table, const Lanes& place) {
+DRAPEPLAN_INLINE inline Lanes load_entries(const double* table, const Lanes& place) {
 #if defined(__AVX512F__)
   return Lanes(_mm512_i32gather_pd(_mm512_cvttpd_epi32(static_cast<__m512d>(place)), table, sizeof(double)));
 #else
@@ -49,7 +59,7 @@ inline Lanes load_entries(const double* table, const Lanes& place) {
 
 /// Entries 2k and 2k + 1 of a table for k = place cut to a whole number, not below 0; faster than lane by
 /// lane.
-inline void load_pairs(const double* table, const Lanes& place, Lanes& even, Lanes& odd) {
+DRAPEPLAN_INLINE inline void load_pairs(const double* table, const Lanes& place, Lanes& even, Lanes& odd) {
 #if defined(__AVX512F__)
   // Eight loads of a pair, joined and unzipped: half the time of two gathers on processors with slow ones.
   const __m256i at = _mm256_slli_epi32(_mm512_cvttpd_epi32(static_cast<__m512d>(place)), 1);
@@ -86,7 +96,7 @@ inline void root_and_inverse(double square, double& root, double& inverse) {
   root = std::sqrt(square);
   inverse = 1 / root;
 }
-inline void root_and_inverse(const Lanes& square, Lanes& root, Lanes& inverse) {
+DRAPEPLAN_INLINE inline void root_and_inverse(const Lanes& square, Lanes& root, Lanes& inverse) {
 #if defined(__AVX512F__)
   // From 14 bits by the series of (1 - e)^(-1/2) to e^3, to two ulps: half the time of a square root and a
   // division.

@@ -22,7 +22,7 @@ class Lookup {
     const size_t k = piece(at);
     return line_[2 * k] + line_[2 * k + 1] * at;
   }
-  [[nodiscard]] Lanes operator()(const Lanes& at) const {
+  DRAPEPLAN_INLINE [[nodiscard]] Lanes operator()(const Lanes& at) const {
     namespace stdx = std::experimental;
     const Lanes place = stdx::clamp((at - Lanes(lower_)) * Lanes(per_step_), Lanes(0.0), Lanes(last_));
     Lanes intercept, slope;

@@ -20,7 +20,7 @@ namespace drapeplan {
 
 /// How many octaves a normal number >= 1 is above 1, linear within each: what its bits say, read as an
 /// integer. A logarithm without its series, good for places in a table whose rows are spaced likewise.
-inline Lanes octaves(const Lanes& x) {
+DRAPEPLAN_INLINE inline Lanes octaves(const Lanes& x) {
   constexpr double kPerOctave = double(std::int64_t(1) << 52), kBias = 1023;
 #if defined(__AVX512DQ__)
   const Lanes bits(_mm512_cvtepi64_pd(_mm512_castpd_si512(static_cast<__m512d>(x))));
@@ -47,7 +47,7 @@ class RateLookup {
              double floor, double fastest);
 
   /// @param growth  rate over `floor`, not below 0.
-  [[nodiscard]] Lanes operator()(const Lanes& strain, const Lanes& growth) const {
+  DRAPEPLAN_INLINE [[nodiscard]] Lanes operator()(const Lanes& strain, const Lanes& growth) const {
     const Place at = place(strain, growth);
     Lanes slow0, slow1, fast0, fast1;
     gather(at, slow0, slow1, fast0, fast1);
@@ -78,14 +78,15 @@ class RateLookup {
     Lanes share;  ///< between the slower and the faster row
     Lanes index;  ///< of the slower row's piece
   };
-  [[nodiscard]] Place place(const Lanes& strain, const Lanes& growth) const {
+  DRAPEPLAN_INLINE [[nodiscard]] Place place(const Lanes& strain, const Lanes& growth) const {
     namespace stdx = std::experimental;
     const Lanes piece = stdx::clamp((strain - Lanes(lower_)) * Lanes(per_step_), Lanes(0.0), Lanes(last_));
     const Lanes y = stdx::min(octaves(Lanes(1.0) + growth) * Lanes(per_rate_step_), Lanes(rows_));
     const Lanes row = stdx::min(stdx::floor(y), Lanes(rows_ - 1));
     return {y - row, row * Lanes(double(pieces_)) + stdx::floor(piece)};
   }
-  void gather(const Place& at, Lanes& slow0, Lanes& slow1, Lanes& fast0, Lanes& fast1) const {
+  DRAPEPLAN_INLINE void gather(const Place& at, Lanes& slow0, Lanes& slow1, Lanes& fast0,
+                               Lanes& fast1) const {
     load_pairs(line_.data(), at.index, slow0, slow1);
     load_pairs(line_.data() + 2 * pieces_, at.index, fast0, fast1);
   }
@@ -120,13 +121,15 @@ class RateSlopes {
 
  protected:
   /// Rate at which the strain's magnitude grows, over the floor.
-  [[nodiscard]] Lanes growth(const Lanes& strain, size_t slot, const Lanes& gain) const {
+  DRAPEPLAN_INLINE [[nodiscard]] Lanes growth(const Lanes& strain, size_t slot, const Lanes& gain) const {
     namespace stdx = std::experimental;
     const Lanes ahead = (strain - load(seen_ + slot * stride_)) * gain;
-    return stdx::max(Lanes(0.0), stdx::copysign(Lanes(1.0), strain) * ahead);
+    Lanes grown = ahead;
+    stdx::where(strain < Lanes(0.0), grown) = -ahead;
+    return stdx::max(Lanes(0.0), grown);
   }
   /// The rate of the angle is that of its sine over its cosine.
-  [[nodiscard]] Lanes shear_gain(const Lanes& sine) const {
+  DRAPEPLAN_INLINE [[nodiscard]] Lanes shear_gain(const Lanes& sine) const {
     namespace stdx = std::experimental;
     constexpr double kLeastCosine2 = 0.04;  // 78.5 degrees: where the table of the shear stress ends
     Lanes cosine, inverse;
@@ -148,19 +151,19 @@ class RateLaw : public RateSlopes {
   RateLaw(const RateTables& tables, double* lagged, size_t stride, double follow)
       : RateSlopes(tables, lagged, stride), lagged_(lagged), follow_(follow) {}
 
-  [[nodiscard]] Lanes fibre(const Lanes& strain, size_t slot) {
+  DRAPEPLAN_INLINE [[nodiscard]] Lanes fibre(const Lanes& strain, size_t slot) {
     const Lanes stress = tables_.fibre(strain, growth(strain, slot, Lanes(tables_.gain)));
     move_on(strain, slot);
     return stress;
   }
-  [[nodiscard]] Lanes shear(const Lanes& sine, size_t slot) {
+  DRAPEPLAN_INLINE [[nodiscard]] Lanes shear(const Lanes& sine, size_t slot) {
     const Lanes stress = tables_.shear(sine, growth(sine, slot, shear_gain(sine)));
     move_on(sine, slot);
     return stress;
   }
 
  private:
-  void move_on(const Lanes& strain, size_t slot) {
+  DRAPEPLAN_INLINE void move_on(const Lanes& strain, size_t slot) {
     double* at = lagged_ + slot * stride_;
     const Lanes old = load(at);
     store(old + Lanes(follow_) * (strain - old), at);

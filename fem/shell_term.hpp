@@ -10,13 +10,6 @@
 #include "fem/shell_bounds.hpp"
 #include "fem/shell_tables.hpp"
 
-// Inlining all of a kernel takes sanitizers many minutes, and gains nothing there.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define DRAPEPLAN_FLATTEN
-#else
-#define DRAPEPLAN_FLATTEN [[gnu::flatten]]
-#endif
-
 namespace drapeplan {
 
 /// A run of kLanes elements; the last one is filled up with copies of its last element that have no area.
