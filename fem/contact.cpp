@@ -34,8 +34,6 @@ Lanes share_held(const Lanes& limit, const Lanes& pull) {
   return share;
 }
 
-constexpr int kChunk = 8 * kLanes;  // heights of a chunk stay in the innermost cache
-
 /// Heights and slopes of a chunk of nodes at places of their own.
 struct Feet {
   double x[kChunk], y[kChunk], z[kChunk], zx[kChunk], zy[kChunk];
@@ -60,8 +58,9 @@ class ContactTerm final : public Term {
   }
 
   [[nodiscard]] std::vector<Forces> entries() const override {
-    std::vector<Forces> list{{Book::contact, VectorField(count_), {}}};
-    if constexpr (kFriction) list.push_back({Book::friction, VectorField(count_), {}});
+    const std::vector<double> clearance(size_t((count_ + kChunk - 1) / kChunk), 0.0);
+    std::vector<Forces> list{{Book::contact, VectorField(count_), {}, clearance}};
+    if constexpr (kFriction) list.push_back({Book::friction, VectorField(count_), {}, clearance});
     return list;
   }
 
@@ -86,17 +85,23 @@ class ContactTerm final : public Term {
   }
 
   void forces(State& state, Forces* entries) const override {
+    const bool follows = entries->step + 1 == state.step;
+    entries->step = state.step;
     Feet feet;
     for (int first = 0; first < count_; first += kChunk) {
-      const int chunk = std::min(kChunk, int(padded(count_)) - first);
-      if (find_feet(state, size_t(first), chunk, feet)) {
-        mold_.heights(chunk, feet.x, feet.y, feet.z, feet.zx, feet.zy);
-        for (int k = 0; k < chunk && first + k < count_; k += kLanes)
-          press(state, entries, size_t(first + k), feet, size_t(k));
-      } else {
-        for (int k = 0; k < chunk && first + k < count_; k += kLanes)
+      const auto chunk = size_t(first / kChunk);
+      if (follows && still_clear(state, size_t(first), entries->clearance[chunk])) continue;
+      const int size = std::min(kChunk, int(padded(count_)) - first);
+      double clearance = find_feet(state, size_t(first), size, feet);
+      if (clearance > 0) {
+        for (int k = 0; k < size && first + k < count_; k += kLanes)
           release(state, entries, size_t(first + k));
+      } else {
+        mold_.heights(size, feet.x, feet.y, feet.z, feet.zx, feet.zy);
+        for (int k = 0; k < size && first + k < count_; k += kLanes)
+          press(state, entries, size_t(first + k), feet, size_t(k));
       }
+      for (size_t e = 0; e < (kFriction ? 2 : 1); ++e) entries[e].clearance[chunk] = clearance;
     }
   }
 
@@ -106,11 +111,26 @@ class ContactTerm final : public Term {
     stiffness.damping[n] += springs_.damping[n];
   }
 
+  /// What is left of a chunk's clearance after the step that led here, at twice the speed of its fastest
+  /// node.
+  /// @return true if there is some.
+  bool still_clear(const State& state, size_t first, double& clearance) const {
+    if (!(clearance > 0)) return false;
+    Lanes fastest2(0.0);
+    for (size_t n = first; n < std::min(first + size_t(kChunk), size_t(count_)); n += size_t(kLanes)) {
+      const Vec3<Lanes> v = state.v.lanes(n);
+      fastest2 = stdx::max(fastest2, dot(v, v));
+    }
+    clearance -= 2 * state.dt_before * std::sqrt(stdx::hmax(fastest2));
+    return clearance > 0;
+  }
+
   /// Places where the normals of the tangent planes at the vertical feet come from: one step towards the
-  /// closest points. False if no node of the chunk is near the mold.
-  bool find_feet(const State& state, size_t first, int chunk, Feet& feet) const {
+  /// closest points.
+  /// @return how far all nodes may move without touching [m]; 0 if one is near the mold or beside it.
+  double find_feet(const State& state, size_t first, int chunk, Feet& feet) const {
     mold_.heights(chunk, &state.x.x[first], &state.x.y[first], feet.z, feet.zx, feet.zy);
-    bool any = false;
+    Lanes lowest(std::numeric_limits<double>::infinity());
     for (size_t k = 0; k < size_t(chunk); k += size_t(kLanes)) {
       const Vec3<Lanes> x = state.x.lanes(first + k);
       const Lanes zx = load(&feet.zx[k]), zy = load(&feet.zy[k]), above = x.z - load(&feet.z[k]);
@@ -118,7 +138,9 @@ class ContactTerm final : public Term {
       const Lanes reach((1 + kNear) * surface_);  // false where the mold is not defined
       const auto near =
           (above < Lanes(0.0) || above * above < reach * reach * stretch2) && slope2 < Lanes(kSteepest2);
-      any = any || stdx::any_of(near);
+      Lanes clear = above - reach * stdx::sqrt(Lanes(1.0 + kSteepest2));
+      stdx::where(near || !(clear > Lanes(0.0)), clear) = Lanes(0.0);
+      lowest = stdx::min(lowest, clear);
       const Lanes along = above / stretch2;
       Lanes fx(kNowhere), fy(kNowhere);
       stdx::where(near, fx) = x.x + along * zx;
@@ -126,7 +148,8 @@ class ContactTerm final : public Term {
       store(fx, &feet.x[k]);
       store(fy, &feet.y[k]);
     }
-    return any;
+    // The gap shrinks by what a node moves down, and by the steepest slope times what it moves sideways.
+    return stdx::hmin(lowest) / (1 + std::sqrt(kSteepest2));
   }
 
   void release(State& state, Forces* entries, size_t at) const {

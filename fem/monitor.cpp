@@ -68,7 +68,6 @@ bool Monitor::look(State& state, RunReport& report) {
 void Monitor::note_penetration(State& state) const {
   const Mold& mold = *model_.scene().mold;
   const double surface = 0.5 * model_.scene().fabric.thickness;
-  constexpr int kChunk = 64;
   double z[kChunk], zx[kChunk], zy[kChunk];
   for (int first = 0; first < model_.node_count(); first += kChunk) {
     const int chunk = std::min(kChunk, model_.node_count() - first);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -10,11 +11,20 @@
 
 namespace drapeplan {
 
+inline constexpr int kChunk =
+    8 * kLanes;  ///< nodes of a chunk: what contact looks up for them stays in the cache
+
 /// Forces of one term on the nodes, booked under one entry of the ledger.
 struct Forces {
   Book book = Book::internal;
   VectorField force;   ///< [N]
   VectorField moment;  ///< on directors [N m]; empty if the term never touches them
+  /// Of each chunk: above 0 if its forces are zero, and stay so until a node has moved by as much [m]; empty
+  /// if the term has forces everywhere. Good for the step after `step`.
+  std::vector<double> clearance{};
+  std::int64_t step = -2;
+
+  [[nodiscard]] bool idle(size_t chunk) const { return !clearance.empty() && clearance[chunk] > 0; }
 };
 
 /// A diagonal that is nowhere below the stiffness of all terms: u.K u <= sum over nodes of translation |x|^2

@@ -51,15 +51,24 @@ void kick_nodes(const Model& model, State& state, Workspace& work) {
   const double h = state.kick_time(), alpha = model.alpha();
   const Lanes keep((1 - 0.5 * alpha * h) / (1 + 0.5 * alpha * h)), gain(h / (1 + 0.5 * alpha * h)), half(0.5);
   const Lanes zero(0.0);
-  const size_t count = work.entries.size();
   std::array<Lanes, kMostEntries> power;
   std::array<Vec3<Lanes>, kMostEntries> forces;
   power.fill(zero);
   Lanes damping(0.0);
+  std::array<size_t, kMostEntries> active;
+  size_t count = 0;
   for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
-    Vec3<Lanes> force = forces[0] = work.entries[0].force.lanes(n);
-    for (size_t k = 1; k < count; ++k) force = force + (forces[k] = work.entries[k].force.lanes(n));
+    if (n % size_t(kChunk) == 0) {
+      count = 0;
+      for (size_t k = 1; k < work.entries.size(); ++k) {
+        if (!work.entries[k].idle(n / size_t(kChunk))) active[count++] = k;
+      }
+    }
+    const Vec3<Lanes> internal = work.entries[0].force.lanes(n);
+    Vec3<Lanes> force = internal;
+    for (size_t a = 0; a < count; ++a) force = force + (forces[a] = work.entries[active[a]].force.lanes(n));
     Vec3<Lanes> moment = work.entries[0].moment.lanes(n);
+    const Vec3<Lanes> internal_moment = moment;
     for (const size_t k : work.turning) moment = moment + work.entries[k].moment.lanes(n);
     if (work.has_tied[n / size_t(kLanes)]) {
       work.force.set_lanes(n, force);
@@ -76,12 +85,12 @@ void kick_nodes(const Model& model, State& state, Workspace& work) {
     stdx::where(mobility == zero, free) = zero;
     stdx::where(turning == zero, free_turning) = zero;
     const Vec3<Lanes> mean_v = free * (v + v_new), mean_w = free_turning * (w + w_new);
-    for (size_t k = 0; k < count; ++k) power[k] += dot(forces[k], mean_v);
-    power[0] += dot(work.entries[0].moment.lanes(n), mean_w);
+    power[0] += dot(internal, mean_v) + dot(internal_moment, mean_w);
+    for (size_t a = 0; a < count; ++a) power[active[a]] += dot(forces[a], mean_v);
     for (const size_t k : work.turning) power[k] += dot(work.entries[k].moment.lanes(n), mean_w);
     damping += load(&model.mass()[n]) * dot(mean_v, mean_v) + load(&model.inertia()[n]) * dot(mean_w, mean_w);
   }
-  for (size_t k = 0; k < count; ++k) work.power[k] = stdx::reduce(power[k]);
+  for (size_t k = 0; k < work.entries.size(); ++k) work.power[k] = stdx::reduce(power[k]);
   work.damping = alpha * stdx::reduce(damping);
 }
 
