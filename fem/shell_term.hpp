@@ -12,7 +12,7 @@
 
 namespace drapeplan {
 
-/// A run of kLanes elements; the last one is filled up with copies of its last element that have no area.
+/// A run of elements, at most kLanes; idle lanes have the geometry of the last element, and no area.
 struct Block {
   std::array<std::array<int, size_t(kLanes)>, 4> node;  ///< by corner and lane
   bool in_row = false;     ///< elements of one row of a grid: nodes of a corner follow each other
@@ -184,10 +184,12 @@ class ShellTerm final : public Shell {
           {Lanes(viscous) * g.half1 * g.half1, Lanes(viscous) * g.half2 * g.half2}, {}};
       for (size_t k = 0; k < kStrainSlots; ++k) viscosity.strain[k] = load(before + k * stride);
       Corners<Lanes> f, m;
-      if (block.in_row && block.rectangle) {
-        shell_forces<N, A, true>(g, material_, law, viscosity, x.in_row(block), d.in_row(block), f, m);
+      const Corners<Lanes> at = block.in_row ? x.in_row(block) : x.anywhere(block),
+                           along = block.in_row ? d.in_row(block) : d.anywhere(block);
+      if (block.rectangle) {
+        shell_forces<N, A, true>(g, material_, law, viscosity, at, along, f, m);
       } else {
-        shell_forces<N, A, false>(g, material_, law, viscosity, x.anywhere(block), d.anywhere(block), f, m);
+        shell_forces<N, A, false>(g, material_, law, viscosity, at, along, f, m);
       }
       for (size_t k = 0; k < kStrainSlots; ++k) store(viscosity.strain[k], before + k * stride);
       if (block.in_row) {
