@@ -11,7 +11,7 @@ constexpr int kKrylovSize = 60;        // largest eigenvalue of a mesh's spectru
 constexpr double kProbeLength = 1e-9;  // [m] of a node: strains far below a piece of the tables
 
 constexpr double kOffTheKink = 3e-5;          // strain, less than the look-ahead of Lookup
-constexpr int kFirstRounds = 5, kRounds = 2;  // the first gives most: 8 to 17 % of the step, all 25 %
+constexpr int kFirstRounds = 5, kRounds = 3;  // the first gives most: 8 to 17 % of the step, all 25 %
 constexpr double kGrowth = 1e-6;              // strain: a small rate, where a law with rates is stiffest
 constexpr int kDashpotRounds = 3;             // their share of the rate converges at least threefold in each
 
