@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -40,6 +41,19 @@ void add_reach(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
 
 void add_common_options(CLI::App& verb, CommonOptions& options);
+
+/// Adds one verb. `Options` has the shared ones in its member `common`.
+/// @param describe  describe(CLI::App&, Options&) adds the verb's own arguments and options.
+/// @param run       run(const Options&) does the work and returns the exit code.
+template <class Options, class Describe, class Run>
+void add_verb(CLI::App& program, Action& action, const char* name, const char* text, const Describe& describe,
+              const Run& run) {
+  CLI::App* verb = program.add_subcommand(name, text);
+  const auto options = std::make_shared<Options>();  // lives as long as CLI11 keeps the callback
+  add_common_options(*verb, options->common);
+  describe(*verb, *options);
+  verb->callback([&action, options, run] { action = [options, run] { return run(*options); }; });
+}
 
 /// The case in `file` with the overrides (and the seed) of the command line. If something is wrong with it,
 /// all errors go to stderr and nothing is returned.

@@ -1,15 +1,15 @@
 // bench: throughput of named scenes, whole time steps on one core.
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "fem/throughput.hpp"
 #include "planner/cli.hpp"
 #include "planner/drape_problem.hpp"
 #include "planner/parallel.hpp"
+#include "planner/result_fields.hpp"
 #include "planner/strategy.hpp"
 #include "planner/text.hpp"
 
@@ -103,6 +103,83 @@ std::string processor() {
   return "unknown";
 }
 
+json machine_json() {
+  constexpr size_t kSmall = 16 << 10, kMiddle = 512 << 10, kLarge = 256 << 20;
+  return {{"processor", processor()},
+          {"lanes", kLanes},
+          {"fma_peak_gflops", 1e-9 * fma_peak()},
+          {"stream_16KiB_GBps", 1e-9 * stream_rate(kSmall)},
+          {"stream_512KiB_GBps", 1e-9 * stream_rate(kMiddle)},
+          {"stream_256MiB_GBps", 1e-9 * stream_rate(kLarge)}};
+}
+
+json scene_json(const BenchScene& bench, const Model& model, const Throughput& measured, double peak) {
+  const int flops = kernel_flops(bench.section_points, model.scene().options.fibre_points);
+  return {{"name", bench.name},
+          {"mesh_size", bench.mesh_size},
+          {"section_points", bench.section_points},
+          {"rates", bench.rates},
+          {"precision", "double"},
+          {"elements", model.scene().mesh.element_count()},
+          {"nodes", model.node_count()},
+          {"steps", measured.steps},
+          {"element_updates_per_second", measured.updates_per_second},
+          {"updates_per_second_per_gflops", measured.updates_per_second / (1e-9 * peak)},
+          {"spread", measured.spread},
+          {"kernel_flops_per_update", flops},
+          {"bytes_per_update", step_bytes(model)},
+          {"share_of_peak", flops * measured.updates_per_second / peak},
+          {"state_hash", hex(measured.state_hash)},
+          {"same_hash_in_all_repeats", measured.same_hash}};
+}
+
+json measure_scene(const Case& value, const BenchScene& bench, const Schedule& schedule,
+                   const BenchOptions& options) {
+  constexpr double kStart = 0.05;  // of the schedule [s]: warm, and every scene still moves freely
+  constexpr double kEnd = 10;      // of the scenes without grippers [s]
+  const Model model = model_of(value, bench);
+  const bool drape = bench.kind == Kind::drape;
+  const double peak = fma_peak();  // measured anew: the clock may have changed
+  const Throughput measured = measure_throughput(model, drape ? &schedule : nullptr, drape ? 0 : kEnd, kStart,
+                                                 options.seconds, options.repeats);
+  json entry = scene_json(bench, model, measured, peak);
+  if (bench.name == "drape-5mm")
+    entry["two_side_by_side"] =
+        side_by_side(model, schedule, kStart, options, 2, measured.updates_per_second);
+  return entry;
+}
+
+/// What the machine can do, and the heads of the columns of `scene_line`.
+std::string heading(const json& machine) {
+  char line[300];
+  std::snprintf(
+      line, sizeof line,
+      "%s, %d lanes of double: %.1f GFLOP/s; streams %.0f, %.0f, %.0f GB/s (16 KiB, 512 KiB, 256 MiB)\n\n"
+      "%-26s %9s %9s %12s %8s %9s %9s\n",
+      machine["processor"].get<std::string>().c_str(), kLanes, machine["fma_peak_gflops"].get<double>(),
+      machine["stream_16KiB_GBps"].get<double>(), machine["stream_512KiB_GBps"].get<double>(),
+      machine["stream_256MiB_GBps"].get<double>(), "scene", "elements", "M/s", "M/s per GF/s", "spread",
+      "of peak", "GB/s");
+  return line;
+}
+
+std::string scene_line(const json& scene) {
+  const auto number = [&scene](const char* key) { return scene[key].get<double>(); };
+  const double rate = number("element_updates_per_second");
+  char line[300];
+  std::snprintf(line, sizeof line, "%-26s %9d %9.2f %12.3f %7.1f%% %8.1f%% %9.1f\n",
+                scene["name"].get<std::string>().c_str(), scene["elements"].get<int>(), 1e-6 * rate,
+                1e-6 * number("updates_per_second_per_gflops"), 1e2 * number("spread"),
+                1e2 * number("share_of_peak"), 1e-9 * rate * number("bytes_per_update"));
+  std::string text = line;
+  if (scene.contains("two_side_by_side")) {
+    std::snprintf(line, sizeof line, "%-26s %9s %9.2f times the throughput of one\n", "  two on two cores",
+                  "", number("two_side_by_side"));
+    text += line;
+  }
+  return text;
+}
+
 std::string csv(const json& result) {
   std::string text =
       "machine,scene,mesh_size_m,section_points,rates,precision,elements,Mupdates_per_s,Mupdates_per_s_per_"
@@ -122,92 +199,41 @@ std::string csv(const json& result) {
   return text;
 }
 
-json scene_json(const BenchScene& bench, const Model& model, const Throughput& measured, double peak) {
-  char hash[20];
-  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(measured.state_hash));
-  const int flops = kernel_flops(bench.section_points, model.scene().options.fibre_points);
-  return {{"name", bench.name},
-          {"mesh_size", bench.mesh_size},
-          {"section_points", bench.section_points},
-          {"rates", bench.rates},
-          {"precision", "double"},
-          {"elements", model.scene().mesh.element_count()},
-          {"nodes", model.node_count()},
-          {"steps", measured.steps},
-          {"element_updates_per_second", measured.updates_per_second},
-          {"updates_per_second_per_gflops", measured.updates_per_second / (1e-9 * peak)},
-          {"spread", measured.spread},
-          {"kernel_flops_per_update", flops},
-          {"bytes_per_update", step_bytes(model)},
-          {"share_of_peak", flops * measured.updates_per_second / peak},
-          {"state_hash", hash},
-          {"same_hash_in_all_repeats", measured.same_hash}};
+/// The scenes named by --scene, or all. A name that none has: an error on stderr, and nothing.
+std::optional<std::vector<BenchScene>> chosen_scenes(const std::vector<std::string>& names) {
+  const std::vector<BenchScene> all = bench_scenes();
+  if (names.empty()) return all;
+  for (const std::string& name : names) {
+    const auto has_name = [&name](const BenchScene& scene) { return scene.name == name; };
+    if (std::any_of(all.begin(), all.end(), has_name)) continue;
+    std::cerr << "bench: --scene: there is no scene \"" << name << "\"; there are";
+    for (const BenchScene& scene : all) std::cerr << ' ' << scene.name;
+    std::cerr << '\n';
+    return std::nullopt;
+  }
+  std::vector<BenchScene> chosen;
+  for (const BenchScene& scene : all) {
+    if (std::find(names.begin(), names.end(), scene.name) != names.end()) chosen.push_back(scene);
+  }
+  return chosen;
 }
 
 int bench(const BenchOptions& options) {
   const std::optional<Case> value =
       load_case(options.file, options.common, {"mapping", "grippers", "material", "mold"});
   if (!value) return kInputWrong;
-  std::vector<BenchScene> scenes = bench_scenes();
-  for (const std::string& name : options.only) {
-    const auto known = [&name](const BenchScene& scene) { return scene.name == name; };
-    if (std::none_of(scenes.begin(), scenes.end(), known)) {
-      std::cerr << "bench: --scene: there is no scene \"" << name << "\"; there are";
-      for (const BenchScene& scene : scenes) std::cerr << ' ' << scene.name;
-      std::cerr << '\n';
-      return kInputWrong;
-    }
-  }
+  const std::optional<std::vector<BenchScene>> scenes = chosen_scenes(options.only);
+  if (!scenes) return kInputWrong;
   const DrapeProblem problem(*value);
   const Schedule schedule = to_schedule(problem.frame(), uniform_strokes(problem.frame()));
-  constexpr double kStart = 0.05;  // of the schedule [s]: warm, and every scene still moves freely
-  constexpr double kEnd = 10;      // of the scenes without grippers [s]
-  json result;
-  const double peak = fma_peak();
-  constexpr size_t kSmall = 16 << 10, kMiddle = 512 << 10, kLarge = 256 << 20;
-  result["machine"] = {{"processor", processor()},
-                       {"lanes", kLanes},
-                       {"fma_peak_gflops", 1e-9 * peak},
-                       {"stream_16KiB_GBps", 1e-9 * stream_rate(kSmall)},
-                       {"stream_512KiB_GBps", 1e-9 * stream_rate(kMiddle)},
-                       {"stream_256MiB_GBps", 1e-9 * stream_rate(kLarge)}};
-  result["scenes"] = json::array();
-  char line[300];
-  std::snprintf(
-      line, sizeof line,
-      "%s, %d lanes of double: %.1f GFLOP/s; streams %.0f, %.0f, %.0f GB/s (16 KiB, 512 KiB, 256 MiB)\n\n"
-      "%-26s %9s %9s %12s %8s %9s %9s\n",
-      processor().c_str(), kLanes, 1e-9 * peak, result["machine"]["stream_16KiB_GBps"].get<double>(),
-      result["machine"]["stream_512KiB_GBps"].get<double>(),
-      result["machine"]["stream_256MiB_GBps"].get<double>(), "scene", "elements", "M/s", "M/s per GF/s",
-      "spread", "of peak", "GB/s");
-  std::string text = line;
+  json result = {{"machine", machine_json()}, {"scenes", json::array()}};
+  std::string text = heading(result["machine"]);
   bool same = true;
-  for (const BenchScene& bench : scenes) {
-    if (!options.only.empty() &&
-        std::find(options.only.begin(), options.only.end(), bench.name) == options.only.end())
-      continue;
-    if (!options.common.quiet) std::cerr << bench.name << " ...\n";
-    const Model model = model_of(*value, bench);
-    const bool drape = bench.kind == Kind::drape;
-    const double peak_now = fma_peak();  // the clock may have changed
-    const Throughput measured = measure_throughput(model, drape ? &schedule : nullptr, drape ? 0 : kEnd,
-                                                   kStart, options.seconds, options.repeats);
-    json entry = scene_json(bench, model, measured, peak_now);
-    same = same && measured.same_hash;
-    std::snprintf(line, sizeof line, "%-26s %9d %9.2f %12.3f %7.1f%% %8.1f%% %9.1f\n", bench.name.c_str(),
-                  model.scene().mesh.element_count(), 1e-6 * measured.updates_per_second,
-                  1e-6 * measured.updates_per_second / (1e-9 * peak_now), 1e2 * measured.spread,
-                  1e2 * entry["share_of_peak"].get<double>(),
-                  1e-9 * measured.updates_per_second * entry["bytes_per_update"].get<double>());
-    text += line;
-    if (bench.name == "drape-5mm") {
-      const double two = side_by_side(model, schedule, kStart, options, 2, measured.updates_per_second);
-      entry["two_side_by_side"] = two;
-      std::snprintf(line, sizeof line, "%-26s %9s %9.2f times the throughput of one\n", "  two on two cores",
-                    "", two);
-      text += line;
-    }
+  for (const BenchScene& scene : *scenes) {
+    if (!options.common.quiet) std::cerr << scene.name << " ...\n";
+    json entry = measure_scene(*value, scene, schedule, options);
+    same = same && entry["same_hash_in_all_repeats"].get<bool>();
+    text += scene_line(entry);
     result["scenes"].push_back(std::move(entry));
   }
   const int code = deliver(result, text, options.common, &*value);
@@ -223,17 +249,18 @@ int bench(const BenchOptions& options) {
 }  // namespace
 
 void add_bench(CLI::App& program, Action& action) {
-  CLI::App* verb =
-      program.add_subcommand("bench", "throughput of whole time steps in named scenes, on one core");
-  const auto options = std::make_shared<BenchOptions>();  // lives as long as CLI11 keeps the callback
-  verb->add_option("CASE", options->file, "case with mold and grippers (default: cases/flexdraper-5x5.json)");
-  add_common_options(*verb, options->common);
-  verb->add_option("--scene", options->only, "only these scenes (repeatable)");
-  verb->add_option("--repeats", options->repeats, "of each scene; the median counts (default: 5)")
-      ->check(CLI::Range(1, 1000));
-  verb->add_option("--seconds", options->seconds, "that a repeat takes, about (default: 0.5)")
-      ->check(CLI::Range(0.001, 1000.0));
-  verb->callback([&action, options] { action = [options] { return bench(*options); }; });
+  add_verb<BenchOptions>(
+      program, action, "bench", "throughput of whole time steps in named scenes, on one core",
+      [](CLI::App& verb, BenchOptions& options) {
+        verb.add_option("CASE", options.file,
+                        "case with mold and grippers (default: cases/flexdraper-5x5.json)");
+        verb.add_option("--scene", options.only, "only these scenes (repeatable)");
+        verb.add_option("--repeats", options.repeats, "of each scene; the median counts (default: 5)")
+            ->check(CLI::Range(1, 1000));
+        verb.add_option("--seconds", options.seconds, "that a repeat takes, about (default: 0.5)")
+            ->check(CLI::Range(0.001, 1000.0));
+      },
+      bench);
 }
 
 }  // namespace drapeplan

@@ -1,6 +1,5 @@
 // check, schema, explain: everything about case files that needs no computation.
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "planner/cli.hpp"
@@ -41,11 +40,25 @@ int check(const CheckOptions& options) {
   return all.empty() ? code : kInputWrong;
 }
 
-int explain(const std::string& path, const CommonOptions& options) {
+struct SchemaOptions {
+  CommonOptions common;
+};
+
+int schema(const SchemaOptions& options) {
+  const json document = case_schema();
+  return deliver(document, document.dump(2) + '\n', options.common);
+}
+
+struct ExplainOptions {
+  CommonOptions common;
+  std::string path;
+};
+
+int explain(const ExplainOptions& options) {
   std::string nearest;
-  const std::string text = explain_field(path, nearest);
-  if (!text.empty()) return deliver({{"path", path}, {"text", text}}, text, options);
-  std::cerr << "explain: there is no field \"" << path << '"';
+  const std::string text = explain_field(options.path, nearest);
+  if (!text.empty()) return deliver({{"path", options.path}, {"text", text}}, text, options.common);
+  std::cerr << "explain: there is no field \"" << options.path << '"';
   if (!nearest.empty()) std::cerr << "; did you mean \"" << nearest << "\"?";
   std::cerr << '\n';
   return kInputWrong;
@@ -54,33 +67,27 @@ int explain(const std::string& path, const CommonOptions& options) {
 }  // namespace
 
 void add_check(CLI::App& program, Action& action) {
-  CLI::App* verb =
-      program.add_subcommand("check", "reads case files and lists everything that is wrong with them");
-  const auto options = std::make_shared<CheckOptions>();  // lives as long as CLI11 keeps the callback
-  verb->add_option("CASE", options->files, "case files")->required();
-  add_common_options(*verb, options->common);
-  verb->callback([&action, options] { action = [options] { return check(*options); }; });
+  add_verb<CheckOptions>(
+      program, action, "check", "reads case files and lists everything that is wrong with them",
+      [](CLI::App& verb, CheckOptions& options) {
+        verb.add_option("CASE", options.files, "case files")->required();
+      },
+      check);
 }
 
 void add_schema(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("schema", "prints the JSON schema of case files");
-  const auto options = std::make_shared<CommonOptions>();
-  add_common_options(*verb, *options);
-  verb->callback([&action, options] {
-    action = [options] {
-      const json schema = case_schema();
-      return deliver(schema, schema.dump(2) + '\n', *options);
-    };
-  });
+  add_verb<SchemaOptions>(
+      program, action, "schema", "prints the JSON schema of case files", [](CLI::App&, SchemaOptions&) {},
+      schema);
 }
 
 void add_explain(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("explain", "prints meaning, unit, range and default of a field");
-  const auto path = std::make_shared<std::string>();
-  const auto options = std::make_shared<CommonOptions>();
-  verb->add_option("PATH", *path, "dots between keys, e.g. grippers.joint_offset")->required();
-  add_common_options(*verb, *options);
-  verb->callback([&action, path, options] { action = [path, options] { return explain(*path, *options); }; });
+  add_verb<ExplainOptions>(
+      program, action, "explain", "prints meaning, unit, range and default of a field",
+      [](CLI::App& verb, ExplainOptions& options) {
+        verb.add_option("PATH", options.path, "dots between keys, e.g. grippers.joint_offset")->required();
+      },
+      explain);
 }
 
 }  // namespace drapeplan

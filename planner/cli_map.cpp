@@ -1,7 +1,6 @@
 // map: kinematic energy mapping only.
 #include <cstdio>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -84,11 +83,12 @@ int map(const MapOptions& options) {
 }  // namespace
 
 void add_map(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("map", "maps the ply onto the mold: targets, boundary, shear");
-  const auto options = std::make_shared<MapOptions>();  // lives as long as CLI11 keeps the callback
-  verb->add_option("CASE", options->file, "case file")->required();
-  add_common_options(*verb, options->common);
-  verb->callback([&action, options] { action = [options] { return map(*options); }; });
+  add_verb<MapOptions>(
+      program, action, "map", "maps the ply onto the mold: targets, boundary, shear",
+      [](CLI::App& verb, MapOptions& options) {
+        verb.add_option("CASE", options.file, "case file")->required();
+      },
+      map);
 }
 
 }  // namespace drapeplan

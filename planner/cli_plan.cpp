@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <iostream>
 #include <map>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "planner/cli.hpp"
@@ -202,14 +201,14 @@ int plan_all(const PlanVerbOptions& options) {
 }  // namespace
 
 void add_plan(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand(
-      "plan",
-      "the main job: finds a better draping sequence and compares it with the uniform and the wave baseline");
-  const auto options = std::make_shared<PlanVerbOptions>();  // lives as long as CLI11 keeps the callback
-  verb->add_option("CASE", options->files, "case files")->required();
-  add_common_options(*verb, options->common);
-  verb->add_flag("--resume", options->resume, "continue from the evaluations in the run directory");
-  verb->callback([&action, options] { action = [options] { return plan_all(*options); }; });
+  add_verb<PlanVerbOptions>(
+      program, action, "plan",
+      "the main job: finds a better draping sequence and compares it with the uniform and the wave baseline",
+      [](CLI::App& verb, PlanVerbOptions& options) {
+        verb.add_option("CASE", options.files, "case files")->required();
+        verb.add_flag("--resume", options.resume, "continue from the evaluations in the run directory");
+      },
+      plan_all);
 }
 
 }  // namespace drapeplan

@@ -1,7 +1,6 @@
 // reach: how close the rig can come to its targets at all.
 #include <cstdio>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -78,12 +77,12 @@ int reach(const ReachOptions& options) {
 }  // namespace
 
 void add_reach(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand(
-      "reach", "how close the grippers can come to their targets, whatever the schedule");
-  const auto options = std::make_shared<ReachOptions>();  // lives as long as CLI11 keeps the callback
-  verb->add_option("CASE", options->file, "case file")->required();
-  add_common_options(*verb, options->common);
-  verb->callback([&action, options] { action = [options] { return reach(*options); }; });
+  add_verb<ReachOptions>(
+      program, action, "reach", "how close the grippers can come to their targets, whatever the schedule",
+      [](CLI::App& verb, ReachOptions& options) {
+        verb.add_option("CASE", options.file, "case file")->required();
+      },
+      reach);
 }
 
 }  // namespace drapeplan

@@ -1,7 +1,6 @@
 // simulate: one FE run, with or without grippers.
 #include <cstdio>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "fem/monitor.hpp"
@@ -244,18 +243,20 @@ int run_simulate(const SimulateOptions& options) {
 }  // namespace
 
 void add_simulate(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("simulate", "one finite-element run of a case");
-  const auto options = std::make_shared<SimulateOptions>();  // lives as long as CLI11 keeps the callback
-  verb->add_option("CASE", options->file, "case file")->required();
-  add_common_options(*verb, options->common);
-  verb->add_option("--schedule", options->schedule, "uniform, wave or a schedule file (default: uniform)");
-  verb->add_option("--fidelity", options->fidelity, "fidelity of the case (default: report)");
-  verb->add_option("--frames", options->frames, "instants written for ParaView (default: 21)")
-      ->check(CLI::Range(1, 10000));
-  verb->add_option("--pause", options->pause, "stops there, e.g. \"2 s\" of the schedule; needs --save");
-  verb->add_option("--save", options->save, "file for the last state, to go on from");
-  verb->add_option("--restart", options->restart, "goes on from a saved state, with the same bits");
-  verb->callback([&action, options] { action = [options] { return run_simulate(*options); }; });
+  add_verb<SimulateOptions>(
+      program, action, "simulate", "one finite-element run of a case",
+      [](CLI::App& verb, SimulateOptions& options) {
+        verb.add_option("CASE", options.file, "case file")->required();
+        verb.add_option("--schedule", options.schedule,
+                        "uniform, wave or a schedule file (default: uniform)");
+        verb.add_option("--fidelity", options.fidelity, "fidelity of the case (default: report)");
+        verb.add_option("--frames", options.frames, "instants written for ParaView (default: 21)")
+            ->check(CLI::Range(1, 10000));
+        verb.add_option("--pause", options.pause, "stops there, e.g. \"2 s\" of the schedule; needs --save");
+        verb.add_option("--save", options.save, "file for the last state, to go on from");
+        verb.add_option("--restart", options.restart, "goes on from a saved state, with the same bits");
+      },
+      run_simulate);
 }
 
 }  // namespace drapeplan
