@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "fem/monitor.hpp"
@@ -109,12 +110,14 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   State& state = result.state;
   state = first_state(model, request);
   const std::int64_t first_step = state.step, frames = request.observe ? request.frames : 0;
+  const std::int64_t last_step =
+      request.steps > 0 ? first_step + request.steps : std::numeric_limits<std::int64_t>::max();
   const std::int64_t spans = std::max<std::int64_t>(frames - 1, 1);
   std::int64_t frame = state.step == 0 ? 0 : clock.passed(state.time, spans) + 1;
   Workspace work(model);
   Monitor monitor(model);
   bool running = true, rests = false;
-  while (running && !rests && !clock.ended(state) && state.time < clock.pause) {
+  while (running && !rests && !clock.ended(state) && state.time < clock.pause && state.step < last_step) {
     if (frame < frames && clock.passed(state.time, spans) >= frame) {
       request.observe(take_snapshot(model, state, drive));
       ++frame;

@@ -1,6 +1,7 @@
 // One run of a model: explicit central differences from the flat ply to the end of the schedule.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
 #include "fem/model.hpp"
@@ -16,7 +17,8 @@ struct RunRequest {
   const State* from = nullptr;         ///< goes on from here instead of the flat start
   double pause =
       0;  ///< stops at the first step at or after it, to be continued; 0: never [s, schedule's clock]
-  int frames = 0;  ///< snapshots handed to `observe`, equally spaced in time, the start included
+  std::int64_t steps = 0;  ///< stops after so many of its own, to be continued; 0: no limit
+  int frames = 0;          ///< snapshots handed to `observe`, equally spaced in time, the start included
   std::function<void(const Snapshot&)> observe = nullptr;
 };
 

@@ -131,27 +131,26 @@ double stream_rate(std::size_t bytes) {
   return best;
 }
 
-Throughput measure_throughput(const Model& model, const Schedule* schedule, double duration, double start,
-                              double seconds, int repeats) {
-  const double scaling = model.scene().options.time_scaling;
-  RunRequest request{.schedule = schedule, .duration = duration, .pause = start};
-  const auto run = [&](const State* from, double pause) {
-    request.from = from;
-    request.pause = pause;
-    RunResult result = simulate(model, request);
+Throughput measure_throughput(const Model& model, const ThroughputRequest& request) {
+  const auto run = [&](RunRequest part) {
+    part.schedule = request.schedule;
+    part.duration = request.duration;
+    RunResult result = simulate(model, part);
     if (result.report.status == RunStatus::diverged) throw std::runtime_error(result.report.message);
     return result;
   };
-  const State from = run(nullptr, start).state;
-  // A short run says how many steps fill a repeat.
-  constexpr double kTrialSteps = 200;
-  const RunReport trial = run(&from, scaling * (from.time + kTrialSteps * from.dt)).report;
-  const double per_step = trial.wall_seconds / double(trial.steps - from.step);
-  const double pause = scaling * (from.time + std::max(seconds / per_step, kTrialSteps) * from.dt);
+  const State from = run({.pause = request.start}).state;
+  std::int64_t steps = request.steps;
+  if (steps == 0) {  // a short run says how many fill a repeat
+    constexpr std::int64_t kTrialSteps = 200;
+    const RunReport trial = run({.from = &from, .steps = kTrialSteps}).report;
+    const double per_step = trial.wall_seconds / double(trial.steps - from.step);
+    steps = std::max(std::int64_t(request.seconds / per_step), kTrialSteps);
+  }
   Throughput out;
   std::vector<double> rates;
-  for (int k = 0; k < repeats; ++k) {
-    const RunReport report = run(&from, pause).report;
+  for (int k = 0; k < request.repeats; ++k) {
+    const RunReport report = run({.from = &from, .steps = steps}).report;
     rates.push_back(report.element_updates_per_second);
     out.same_hash = out.same_hash && (k == 0 || report.state_hash == out.state_hash);
     out.state_hash = report.state_hash;

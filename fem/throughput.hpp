@@ -31,9 +31,17 @@ struct Throughput {
   bool same_hash = true;          ///< all repeats ended in the same bits
 };
 
-/// Runs the scene to `start` [s, of the schedule] to warm up, and from there `repeats` times the same steps.
-/// @param seconds  that a repeat takes, about.
-Throughput measure_throughput(const Model& model, const Schedule* schedule, double duration, double start,
-                              double seconds, int repeats);
+/// What is measured: from `start` on, `repeats` times the same steps.
+struct ThroughputRequest {
+  const Schedule* schedule = nullptr;  ///< needed with a rig
+  double duration = 0;                 ///< without a schedule [s]
+  double start = 0;                    ///< the run up to it warms up [s, of the schedule]
+  double seconds = 0.5;                ///< that a repeat takes, about
+  std::int64_t steps = 0;              ///< of each repeat, whatever time they take; 0: what fills `seconds`
+  int repeats = 5;
+};
+
+/// @throws std::runtime_error if the scene diverges.
+Throughput measure_throughput(const Model& model, const ThroughputRequest& request);
 
 }  // namespace drapeplan

@@ -24,6 +24,7 @@ struct BenchOptions {
   std::vector<std::string> only;
   int repeats = 5;
   double seconds = 0.5;
+  std::int64_t steps = 0;
 };
 
 enum class Kind { free_sheet, sheet_on_mold, drape };
@@ -80,15 +81,10 @@ Model model_of(const Case& value, const BenchScene& bench) {
 }
 
 /// Throughput of as many candidates side by side, which share the model, over that of one.
-double side_by_side(const Model& model, const Schedule& schedule, double start, const BenchOptions& options,
-                    int candidates, double one) {
+double side_by_side(const Model& model, const ThroughputRequest& request, int candidates, double one) {
   std::vector<double> rate(size_t(candidates), 0.0);
   parallel_for(
-      candidates,
-      [&](int k) {
-        rate[size_t(k)] = measure_throughput(model, &schedule, 0, start, options.seconds, options.repeats)
-                              .updates_per_second;
-      },
+      candidates, [&](int k) { rate[size_t(k)] = measure_throughput(model, request).updates_per_second; },
       candidates);
   double sum = 0;
   for (const double value : rate) sum += value;
@@ -140,12 +136,16 @@ json measure_scene(const Case& value, const BenchScene& bench, const Schedule& s
   const Model model = model_of(value, bench);
   const bool drape = bench.kind == Kind::drape;
   const double peak = fma_peak();  // measured anew: the clock may have changed
-  const Throughput measured = measure_throughput(model, drape ? &schedule : nullptr, drape ? 0 : kEnd, kStart,
-                                                 options.seconds, options.repeats);
+  const ThroughputRequest request{.schedule = drape ? &schedule : nullptr,
+                                  .duration = drape ? 0 : kEnd,
+                                  .start = kStart,
+                                  .seconds = options.seconds,
+                                  .steps = options.steps,
+                                  .repeats = options.repeats};
+  const Throughput measured = measure_throughput(model, request);
   json entry = scene_json(bench, model, measured, peak);
-  if (bench.name == "drape-5mm")
-    entry["two_side_by_side"] =
-        side_by_side(model, schedule, kStart, options, 2, measured.updates_per_second);
+  if (bench.name == "drape-5mm" && options.steps == 0)
+    entry["two_side_by_side"] = side_by_side(model, request, 2, measured.updates_per_second);
   return entry;
 }
 
@@ -259,6 +259,9 @@ void add_bench(CLI::App& program, Action& action) {
             ->check(CLI::Range(1, 1000));
         verb.add_option("--seconds", options.seconds, "that a repeat takes, about (default: 0.5)")
             ->check(CLI::Range(0.001, 1000.0));
+        verb.add_option("--steps", options.steps,
+                        "of a repeat, instead of --seconds: two builds end in the same state")
+            ->check(CLI::Range(1, 100000000));
       },
       bench);
 }

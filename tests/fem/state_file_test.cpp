@@ -119,6 +119,17 @@ TEST(Restart, GoesOnWithTheSameBitsForADrapeWithRigMoldFrictionAndRelease) {
   expect_same(simulate(Model(scene), request), in_parts(scene, request, {0.51, 3.3, 4.6}));
 }
 
+TEST(Restart, AfterACountOfStepsGoesOnWithTheSameBits) {
+  const Model model(strip());
+  const RunResult whole = simulate(model, {.duration = 0.05});
+  const RunResult first = simulate(model, {.duration = 0.05, .steps = 37});
+  EXPECT_EQ(first.report.status, RunStatus::paused);
+  EXPECT_EQ(first.state.step, 37);
+  const RunResult second = simulate(model, {.duration = 0.05, .from = &first.state, .steps = 5});
+  EXPECT_EQ(second.state.step, 42);
+  expect_same(whole, simulate(model, {.duration = 0.05, .from = &second.state}));
+}
+
 TEST(Restart, ShowsTheSameFramesOnce) {
   std::vector<double> whole, parts;
   RunRequest request{.duration = 0.1, .frames = 7};
