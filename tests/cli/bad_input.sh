@@ -29,7 +29,11 @@ done
 
 good=$source/cases/flexdraper-quick.json
 expect 2                                             # no verb
-expect 2 drpe                                        # no such verb
+expect 2 simulte "$good"                             # no such verb
+grep -qF 'there is no verb "simulte"; did you mean "simulate"?' "$work/stderr" || fail "no nearest verb"
+expect 2 xyz                                         # nor one like it
+grep -qF 'there is no verb "xyz"; expected "plan", ' "$work/stderr" || fail "verbs are not listed"
+[ -s "$work/stdout" ] && fail "something on stdout without a verb"
 expect 2 map                                         # no case
 expect 2 map "$good" --threads 0
 expect 2 map "$good" --set ply.widht='1 mm'

@@ -23,4 +23,16 @@ run map "$source/cases/plane-mapping.json" --quiet
 [ -s "$work/stdout" ] && fail "--quiet is not quiet"
 run reach "$source/cases/flexdraper-quick.json" --json
 has floor_max floor_rms per_gripper link_violation status
+# What cannot be written to stdout is an error that is named, and files are kept.
+full() {
+  "$program" "$@" >/dev/full 2>"$work/stderr"
+  local got=$?
+  [ "$got" = 3 ] || fail "exit $got instead of 3 on a full disk: $*"
+  grep -qF 'stdout: cannot be written' "$work/stderr" || fail "a full disk is not named: $*"
+}
+full map "$source/cases/plane-mapping.json" --out "$work/full"
+[ -s "$work/full/result.json" ] || fail "no result.json because stdout is full"
+full map "$source/cases/plane-mapping.json" --json
+full schema
+full --help
 [ $failures = 0 ]
