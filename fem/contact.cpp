@@ -39,6 +39,12 @@ struct Feet {
   double x[kChunk], y[kChunk], z[kChunk], zx[kChunk], zy[kChunk];
 };
 
+/// What a chunk of nodes has of the mold.
+struct Neighbourhood {
+  bool near = false;     ///< a node may touch
+  double clearance = 0;  ///< how far all may move without touching [m]; 0 if one may touch, or is beside it
+};
+
 template <bool kFriction>
 class ContactTerm final : public Term {
  public:
@@ -92,16 +98,15 @@ class ContactTerm final : public Term {
       const auto chunk = size_t(first / kChunk);
       if (follows && still_clear(state, size_t(first), entries->clearance[chunk])) continue;
       const int size = std::min(kChunk, int(padded(count_)) - first);
-      double clearance = find_feet(state, size_t(first), size, feet);
-      if (clearance > 0) {
-        for (int k = 0; k < size && first + k < count_; k += kLanes)
-          release(state, entries, size_t(first + k));
-      } else {
-        mold_.heights(size, feet.x, feet.y, feet.z, feet.zx, feet.zy);
-        for (int k = 0; k < size && first + k < count_; k += kLanes)
+      const Neighbourhood mold = find_feet(state, size_t(first), size, feet);
+      if (mold.near) mold_.heights(size, feet.x, feet.y, feet.z, feet.zx, feet.zy);
+      for (int k = 0; k < size && first + k < count_; k += kLanes) {
+        if (mold.near)
           press(state, entries, size_t(first + k), feet, size_t(k));
+        else
+          release(state, entries, size_t(first + k));
       }
-      for (size_t e = 0; e < (kFriction ? 2 : 1); ++e) entries[e].clearance[chunk] = clearance;
+      for (size_t e = 0; e < (kFriction ? 2 : 1); ++e) entries[e].clearance[chunk] = mold.clearance;
     }
   }
 
@@ -127,10 +132,10 @@ class ContactTerm final : public Term {
 
   /// Places where the normals of the tangent planes at the vertical feet come from: one step towards the
   /// closest points.
-  /// @return how far all nodes may move without touching [m]; 0 if one is near the mold or beside it.
-  double find_feet(const State& state, size_t first, int chunk, Feet& feet) const {
+  Neighbourhood find_feet(const State& state, size_t first, int chunk, Feet& feet) const {
     mold_.heights(chunk, &state.x.x[first], &state.x.y[first], feet.z, feet.zx, feet.zy);
     Lanes lowest(std::numeric_limits<double>::infinity());
+    Lanes::mask_type any(false);
     for (size_t k = 0; k < size_t(chunk); k += size_t(kLanes)) {
       const Vec3<Lanes> x = state.x.lanes(first + k);
       const Lanes zx = load(&feet.zx[k]), zy = load(&feet.zy[k]), above = x.z - load(&feet.z[k]);
@@ -138,6 +143,7 @@ class ContactTerm final : public Term {
       const Lanes reach((1 + kNear) * surface_);  // false where the mold is not defined
       const auto near =
           (above < Lanes(0.0) || above * above < reach * reach * stretch2) && slope2 < Lanes(kSteepest2);
+      any = any || near;
       Lanes clear = above - reach * stdx::sqrt(Lanes(1.0 + kSteepest2));
       stdx::where(near || !(clear > Lanes(0.0)), clear) = Lanes(0.0);
       lowest = stdx::min(lowest, clear);
@@ -149,7 +155,7 @@ class ContactTerm final : public Term {
       store(fy, &feet.y[k]);
     }
     // The gap shrinks by what a node moves down, and by the steepest slope times what it moves sideways.
-    return stdx::hmin(lowest) / (1 + std::sqrt(kSteepest2));
+    return {stdx::any_of(any), stdx::hmin(lowest) / (1 + std::sqrt(kSteepest2))};
   }
 
   void release(State& state, Forces* entries, size_t at) const {

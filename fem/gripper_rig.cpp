@@ -69,6 +69,12 @@ GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>
   }
 }
 
+std::vector<std::vector<int>> GripperRig::tied_by_pad() const {
+  std::vector<std::vector<int>> nodes;
+  for (const Pad& pad : pads_) nodes.emplace_back(tied_.begin() + pad.first, tied_.begin() + pad.last);
+  return nodes;
+}
+
 // Twice the kinetic energy of the nodes of a pad at speed V and spin W is at most m V^2 + 2 e V W + j W^2
 // with their mass m, their first moment e and their spread j about the centre; that of the pad is M V^2 + I
 // W^2. The largest eigenvalue of the first form on the second is the inverse of the ratio.

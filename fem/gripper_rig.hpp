@@ -49,6 +49,8 @@ class GripperRig {
 
   /// Nodes that move with pads, all of them.
   [[nodiscard]] const std::vector<int>& tied() const { return tied_; }
+  /// Those of each pad.
+  [[nodiscard]] std::vector<std::vector<int>> tied_by_pad() const;
 
   /// @throws std::invalid_argument if a schedule is not one for this rig in its flat start.
   void check(const Schedule& schedule) const;

@@ -9,15 +9,21 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Sum of all terms' forces on the grip's nodes.
-Vector3d pull(const Grip& grip, const Workspace& work) {
+/// Sum of a field over the grip's nodes.
+Vector3d sum_of(const VectorField& field, const Grip& grip) {
   Vector3d sum(0, 0, 0);
-  for (const Forces& entry : work.entries) {
-    for (const int node : grip.nodes) {
-      const auto n = size_t(node);
-      sum += Vector3d(entry.force.x[n], entry.force.y[n], entry.force.z[n]);
-    }
+  for (const int node : grip.nodes) {
+    const auto n = size_t(node);
+    sum += Vector3d(field.x[n], field.y[n], field.z[n]);
   }
+  return sum;
+}
+
+/// Sum of all forces on the grip's nodes.
+Vector3d pull(const Model& model, const Grip& grip, const Workspace& work) {
+  if (model.fibre_inertia()) return sum_of(work.force, grip);
+  Vector3d sum(0, 0, 0);
+  for (const Forces& entry : work.entries) sum += sum_of(entry.force, grip);
   return sum;
 }
 
@@ -47,7 +53,7 @@ void move_grips(const Model& model, State& state, Workspace& work) {
       set(state.v, size_t(node), next);
       set(work.mean_v, size_t(node), mean);
     }
-    state.work[size_t(Book::grip)] -= state.kick_time() * pull(grip, work).dot(mean);
+    state.work[size_t(Book::grip)] -= state.kick_time() * pull(model, grip, work).dot(mean);
   }
 }
 
@@ -56,7 +62,7 @@ std::vector<Vector3d> grip_forces(const Model& model, const State& state) {
   Workspace work(model);
   compute_forces(model, here, work);
   std::vector<Vector3d> forces;
-  for (const Grip& grip : model.scene().grips) forces.push_back(-pull(grip, work));
+  for (const Grip& grip : model.scene().grips) forces.push_back(-pull(model, grip, work));
   return forces;
 }
 

@@ -69,15 +69,18 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
     terms_.back()->add_stiffness(stiffness);
   }
 
-  mass_.assign(padded(int(n)), 0.0);
-  inertia_ = inverse_mass_ = inverse_inertia_ = mass_;
   own_mass_.resize(n);
   // Mass per stiffness below which the target step would be missed.
   const double rise = scene_.mold ? contact_rise(options) : 1;
   const double share = options.step_safety * viscous_share(options.bulk_viscosity);
   const double needed = std::pow(rise * options.target_step / (2 * share), 2);
+  for (size_t k = 0; k < n; ++k) own_mass_[k] = options.mass_scaling * unscaled[k];
+  if (options.selective_scaling > 1) stiffness = without_borne();
+  for (size_t k = 0; k < n; ++k) own_mass_[k] = std::max(own_mass_[k], needed * stiffness.translation[k]);
+
+  mass_.assign(padded(int(n)), 0.0);
+  inertia_ = inverse_mass_ = inverse_inertia_ = mass_;
   for (size_t k = 0; k < n; ++k) {
-    own_mass_[k] = std::max(options.mass_scaling * unscaled[k], needed * stiffness.translation[k]);
     mass_[k] = own_mass_[k];
     inertia_[k] = gyration2_[k] * mass_[k];
   }
@@ -114,6 +117,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   bear_held_nodes();
   if (scene_.mold) add_contact(stiffness);
   stable_dt_ = stable_dt(stiffness);
+  if (options.selective_scaling > 1) add_fibre_inertia(rise);
   if (rig_) {
     // The joint's mobility: of the pad's mass, and of its inertia through the arm.
     const double arm = scene_.rig->joint_offset / scene_.rig->pad_radius;
@@ -129,6 +133,37 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
     inverse_mass_[k] = mass_[k] > 0 ? 1 / mass_[k] : 0;
     inverse_inertia_[k] = inertia_[k] > 0 ? 1 / inertia_[k] : 0;
   }
+}
+
+/// With selective scaling, mass on edges bears the fibres of rectangles; what is left keeps its bounds. Sets
+/// the rate that those would have, over the scaling.
+/// @return what is left.
+NodalStiffness Model::without_borne() {
+  if (scene_.options.step_interval == 0)
+    throw std::invalid_argument("selective_scaling needs a step that is chosen anew: step_interval above 0");
+  const std::vector<char> borne = shell_->borne();
+  if (std::none_of(borne.begin(), borne.end(), [](char can) { return can; }))
+    throw std::invalid_argument("selective_scaling needs elements that are rectangles along the fibres");
+  NodalStiffness fibres(node_count()), left(node_count());
+  shell_->add_borne_stiffness(fibres);
+  double rate2 = 0;
+  for (size_t k = 0; k < own_mass_.size(); ++k) rate2 = std::max(rate2, fibres.translation[k] / own_mass_[k]);
+  selective_rate_ = std::sqrt(rate2) / scene_.options.selective_scaling;
+  shell_->add_unborne_stiffness(left);
+  if (scene_.loads) terms_.back()->add_stiffness(left);
+  return left;
+}
+
+/// @param rise  of the highest rate by contact.
+void Model::add_fibre_inertia(double rise) {
+  std::vector<double> mobility = mobility_;
+  for (const int node : rig_ ? rig_->tied() : std::vector<int>())
+    mobility[size_t(node)] = 1 / own_mass_[size_t(node)];
+  const double rate = rise * selective_rate_;
+  fibre_inertia_.emplace(scene_.mesh, shell_->borne(), shell_->borne_stretch(), rate, std::move(mobility),
+                         rig_ ? rig_->tied_by_pad() : std::vector<std::vector<int>>());
+  selective_dt_ = stable_dt(rate);
+  stable_dt_ = std::min(stable_dt_, selective_dt_);
 }
 
 /// Held nodes bear any stiffness; tied ones with their share of their pad.
@@ -157,7 +192,11 @@ void Model::add_contact(NodalStiffness& stiffness) {
   const size_t n = own_mass_.size();
   NodalStiffness slow(node_count());
   shell_->add_slow_stiffness(slow);
-  const double highest = contact_rise(options) * 2 / stable_dt(slow);
+  double highest = contact_rise(options) * 2 / stable_dt(slow);
+  if (options.selective_scaling > 1) {
+    highest = contact_rise(options) * selective_rate_;
+    for (size_t k = 0; k < n; ++k) slow.translation[k] = own_mass_[k] * selective_rate_ * selective_rate_;
+  }
   ContactSprings springs{std::vector<double>(n), std::vector<double>(n)};
   for (size_t k = 0; k < n; ++k) springs.stiffness[k] = options.contact_stiffness * slow.translation[k];
   for (const int node : rig_ ? rig_->tied() : std::vector<int>()) {
@@ -188,13 +227,18 @@ double Model::highest_rate(const NodalStiffness& stiffness) const {
 }
 
 double Model::stable_dt(const NodalStiffness& stiffness) const {
-  return 2 / highest_rate(stiffness) * viscous_share(scene_.options.bulk_viscosity);
+  return stable_dt(highest_rate(stiffness));
 }
 
-void Model::lighten(const NodalStiffness& stiffness, std::vector<double>& lightness) const {
+double Model::stable_dt(double highest_rate) const {
+  return 2 / highest_rate * viscous_share(scene_.options.bulk_viscosity);
+}
+
+void Model::lighten(const NodalStiffness& stiffness, double highest_rate,
+                    std::vector<double>& lightness) const {
   namespace stdx = std::experimental;
   constexpr double kLeast = 0.1;  // less gains little, and takes long to find back when stresses move on
-  const Lanes rate(highest_rate(stiffness)), rate2 = rate * rate;
+  const Lanes rate(highest_rate), rate2 = rate * rate;
   Lanes largest(kLeast);
   for (size_t n = 0; n < size_t(node_count()); n += size_t(kLanes)) {
     const Lanes mobility = load(&mobility_[n]);
@@ -230,9 +274,9 @@ std::uint64_t Model::fingerprint() const {
   add(std::array{scene_.fabric.rate_floor, scene_.fabric.rate_filter, double(scene_.fabric.shear_measure),
                  scene_.fabric.transverse_shear_modulus});
   const FemOptions& o = scene_.options;
-  add(std::array{stable_dt_, alpha_, o.time_scaling, o.step_safety, double(o.section_points),
-                 double(o.fibre_points), double(o.step_interval), o.hourglass, o.bulk_viscosity,
-                 o.contact_stiffness, o.contact_damping, scene_.gravity.value_or(0),
+  add(std::array{stable_dt_, alpha_, o.selective_scaling, o.time_scaling, o.step_safety,
+                 double(o.section_points), double(o.fibre_points), double(o.step_interval), o.hourglass,
+                 o.bulk_viscosity, o.contact_stiffness, o.contact_damping, scene_.gravity.value_or(0),
                  scene_.friction.value_or(-1), scene_.position.x(), scene_.position.y(), scene_.angle});
   if (scene_.mold) add_mold(hash, *scene_.mold);
   if (scene_.rest) add(std::array{scene_.rest->speed, scene_.rest->hold});
@@ -264,6 +308,7 @@ std::uint64_t Model::fingerprint() const {
 std::vector<std::string> Model::term_names() const {
   std::vector<std::string> names;
   for (const auto& term : terms_) names.emplace_back(term->name());
+  if (fibre_inertia_) names.emplace_back("mass on fibres");
   if (scene_.damping) names.emplace_back("mass damping");
   if (rig_) names.emplace_back(scene_.rig->interlinks ? "gripper rig with interlinks" : "gripper rig");
   if (!scene_.clamped.empty()) names.emplace_back("clamp");
@@ -281,6 +326,7 @@ State Model::flat_state(double height) const {
     state.stuck.assign(padded(n), 0.0);
   }
   state.history.assign(shell_->history_count(), 0.0);
+  if (fibre_inertia_) state.edges.fill(VectorField(n));
   state.lightness.assign(padded(n), 1.0);
   state.dt = state.dt_before = dt();
   state.stable_dt = stable_dt_;
@@ -300,6 +346,7 @@ State Model::flat_state(double height) const {
     state.d.x[k] = normal.x(), state.d.y[k] = normal.y(), state.d.z[k] = normal.z();
   }
   if (rig_) rig_->place(state, height);
+  if (fibre_inertia_) fibre_inertia_->aim(state);
   return state;
 }
 

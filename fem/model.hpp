@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fem/fabric.hpp"
+#include "fem/fibre_inertia.hpp"
 #include "fem/gripper_rig.hpp"
 #include "fem/grips.hpp"
 #include "fem/loads.hpp"
@@ -51,19 +52,23 @@ class Model {
   [[nodiscard]] const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
   [[nodiscard]] const Shell& shell() const { return *shell_; }
   [[nodiscard]] const std::optional<GripperRig>& rig() const { return rig_; }
+  [[nodiscard]] const std::optional<FibreInertia>& fibre_inertia() const { return fibre_inertia_; }
   [[nodiscard]] std::vector<std::string> term_names() const;
 
   /// Stable step for all strains that the laws allow [s]; see stable_step() for that of a state.
   [[nodiscard]] double stable_dt() const { return stable_dt_; }
+  /// Largest step that mass added to fibres allows [s]; 0 without selective scaling.
+  [[nodiscard]] double selective_dt() const { return selective_dt_; }
   /// The step played where it does not change with the state: step_safety times stable_dt [s].
   [[nodiscard]] double dt() const { return scene_.options.step_safety * stable_dt_; }
   /// Largest stable step for given stiffness bounds over the nodes' own masses [s]. Nodes that are tied or
   /// clamped count as well: what holds them only lowers frequencies.
   [[nodiscard]] double stable_dt(const NodalStiffness& stiffness) const;
   /// 2 / the stable step without viscosity: a bound of the highest frequency, dashpots counted [1/s].
+  [[nodiscard]] double stable_dt(double highest_rate) const;
   [[nodiscard]] double highest_rate(const NodalStiffness& stiffness) const;
   /// Lowers the lightness of nodes whose own rate is below the highest, so that it becomes that.
-  void lighten(const NodalStiffness& stiffness, std::vector<double>& lightness) const;
+  void lighten(const NodalStiffness& stiffness, double highest_rate, std::vector<double>& lightness) const;
   /// Damping rate on the scaled mass [1/s]: with a mass s times larger, modes are sqrt(s) times slower, and
   /// so is what damps them critically. s: of the whole ply.
   [[nodiscard]] double alpha() const { return alpha_; }
@@ -89,19 +94,23 @@ class Model {
   [[nodiscard]] const std::vector<int>& guided() const { return guided_; }
 
  private:
+  NodalStiffness without_borne();
   void bear_held_nodes();
+  void add_fibre_inertia(double rise);
   void add_contact(NodalStiffness& stiffness);
 
   Scene scene_;
   std::vector<std::unique_ptr<Term>> terms_;
   const Shell* shell_ = nullptr;
   std::optional<GripperRig> rig_;
+  std::optional<FibreInertia> fibre_inertia_;
   std::vector<double> mass_, inertia_, inverse_mass_, inverse_inertia_;
   std::vector<int> guided_;
   std::vector<double> bearing_mass_;  ///< what bears stiffness: a tied node's is its share of its pad [kg]
   std::vector<double> mobility_, turning_mobility_;  ///< 1 / bearing mass and inertia; 0 where held [padded]
   std::vector<double> own_mass_, gyration2_;         ///< of all nodes, held ones too [kg], [m^2]
-  double stable_dt_ = 0, alpha_ = 0;
+  double selective_rate_ = 0;  ///< highest of a node that does not touch, with selective scaling [1/s]
+  double stable_dt_ = 0, selective_dt_ = 0, alpha_ = 0;
 };
 
 }  // namespace drapeplan

@@ -18,7 +18,7 @@ constexpr double kGivenShare = 0.01;
 Energies energies(const Model& model, const State& state) {
   const auto work = [&state](Book book) { return state.work[size_t(book)]; };
   Energies e;
-  e.kinetic = kinetic_energy(model, state);
+  e.kinetic = kinetic_energy(model, state) - work(Book::added_mass);
   e.internal = -work(Book::internal);
   e.external = work(Book::gravity) + work(Book::actuator) + work(Book::load) + work(Book::grip);
   e.friction = -work(Book::friction);
@@ -42,6 +42,9 @@ bool Monitor::look(State& state, RunReport& report) {
   // energy out of it, and the books of that still close.
   if (now.internal < -kGivenShare * record.energy)
     return fail(state, "the ply gives energy that it never took: the step is unstable", report);
+  if (state.work[size_t(Book::added_mass)] > kGivenShare * record.energy)
+    return fail(state, "mass added to fibres gives energy that it never took: lower selective_scaling",
+                report);
   record.balance = std::max(record.balance, std::abs(balance));
   for (size_t n = 0; n < size_t(model_.node_count()); ++n) {
     if (std::isfinite(state.x.x[n]) && std::isfinite(state.x.y[n]) && std::isfinite(state.x.z[n]) &&

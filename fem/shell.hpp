@@ -22,6 +22,14 @@ class Shell : public Term {
  public:
   /// Like add_stiffness, with the steepest slopes of the slowest curves.
   virtual void add_slow_stiffness(NodalStiffness& stiffness) const = 0;
+  /// Like add_stiffness, without what selective scaling lets added mass bear.
+  virtual void add_unborne_stiffness(NodalStiffness& stiffness) const = 0;
+  /// Of the fibres that it lets added mass bear, by the slowest curves.
+  virtual void add_borne_stiffness(NodalStiffness& stiffness) const = 0;
+  /// By element: whether mass on its edges can bear its fibres.
+  [[nodiscard]] virtual std::vector<char> borne() const = 0;
+  /// What that mass must bear: force per width and strain [N/m].
+  [[nodiscard]] virtual double borne_stretch() const = 0;
   /// The section's tangents at a state, for add_bounds: section_count() numbers.
   virtual void look_at_sections(const State& state, std::vector<double>& sections) const = 0;
   [[nodiscard]] virtual size_t section_count() const = 0;

@@ -37,6 +37,17 @@ inline SectionStiffness<double> steepest_section(double thickness, double fibre,
   return {both, both, thickness * shear, 1};
 }
 
+/// What is left of a fibre when mass on edges bears (1 + kBorneMargin) times its steepest stretch. The margin
+/// bears what couples stretch to curvature, C: with S the stretch borne, the quadratic form of strain e and
+/// curvature k, margin S e^2 + 2 C e k + C^2 / (margin S) k^2, is a square.
+/// @param off  share of the stretch that is not along the edges.  @param borne  with the margin [N/m].
+inline constexpr double kBorneMargin = 0.1;
+template <class V>
+FibreStiffness<V> unborne(const FibreStiffness<V>& fibre, const V& off, const V& borne) {
+  const V margin = V(kBorneMargin / (1 + kBorneMargin)) * borne, stretch = off * borne;
+  return {stretch, stretch, V(0.0), V(0.0), fibre.bend + fibre.couple * fibre.couple / margin};
+}
+
 /// Squared radius of gyration of directors [m^2]: that of the section, enlarged by a ninth of the element's
 /// area as in established explicit codes, so that bending and transverse shear never govern the step.
 template <class V>

@@ -51,6 +51,9 @@ struct Rows {
     }
     return out;
   }
+  [[nodiscard]] Corners<Lanes> corners(const Block& block) const {
+    return block.in_row ? in_row(block) : anywhere(block);
+  }
   void add_in_row(const Block& block, const Corners<Lanes>& values) const {
     const auto lower = size_t(block.node[0][0]), upper = size_t(block.node[3][0]);
     add_row(part[0], lower, values[0].x, values[1].x);
@@ -90,7 +93,8 @@ class ShellTerm final : public Shell {
         slow_shear_slope_(fabric.shear.slowest().largest_slope()),
         shear_slope_(slow_shear_slope_),
         viscous_mass_(options.bulk_viscosity * options.mass_scaling * fabric.areal_density /
-                      (SectionRule<N>::weight[N / 2] * fabric.thickness)) {
+                      (SectionRule<N>::weight[N / 2] * fabric.thickness)),
+        selective_(options.selective_scaling > 1) {
     if constexpr (kRates) {
       tables_ = rate_tables(fabric);
       fibre_slope_ = tables_.fibre.largest_slope(tables_.gain);
@@ -99,6 +103,7 @@ class ShellTerm final : public Shell {
     }
     for (const auto& quad : mesh.quads) geometry_.push_back(element_geometry(mesh, quad));
     for (size_t first = 0; first < mesh.quads.size();) first += add_block(first);
+    if (selective_) viscous_modulus_ = options.bulk_viscosity * borne_fibre() / SectionRule<N>::weight[N / 2];
   }
 
   [[nodiscard]] std::string_view name() const override { return kRates ? "shell with rates" : "shell"; }
@@ -109,20 +114,41 @@ class ShellTerm final : public Shell {
   }
 
   void add_stiffness(NodalStiffness& stiffness) const override {
-    add_steepest(fibre_slope_, shear_slope_, stiffness);
+    const auto all = steepest_section(material_.thickness, fibre_slope_, shear_slope_);
+    add_steepest(all, all, stiffness);
   }
   void add_slow_stiffness(NodalStiffness& stiffness) const override {
-    add_steepest(material_.fibre.largest_slope(), slow_shear_slope_, stiffness);
+    const auto all =
+        steepest_section(material_.thickness, material_.fibre.largest_slope(), slow_shear_slope_);
+    add_steepest(all, all, stiffness);
   }
+  void add_unborne_stiffness(NodalStiffness& stiffness) const override {
+    const auto all = steepest_section(material_.thickness, fibre_slope_, shear_slope_);
+    auto left = all;
+    left.fibre1 = left.fibre2 = unborne(all.fibre1, 0.0, borne_stretch());
+    add_steepest(left, all, stiffness);
+  }
+  void add_borne_stiffness(NodalStiffness& stiffness) const override {
+    add_steepest(steepest_section(material_.thickness, material_.fibre.largest_slope(), 0),
+                 steepest_section(material_.thickness, 0, 0), stiffness);
+  }
+  [[nodiscard]] std::vector<char> borne() const override {
+    std::vector<char> list;
+    for (const Block& block : blocks_) list.insert(list.end(), size_t(block.used), block.rectangle);
+    return list;
+  }
+  [[nodiscard]] double borne_stretch() const override { return borne_fibre() * material_.thickness; }
 
   DRAPEPLAN_FLATTEN void look_at_sections(const State& state, std::vector<double>& sections) const override {
     const Rows<const double> x(state.x), d(state.d);
     double* at = sections.data();
     for (size_t b = 0; b < blocks_.size(); ++b) {
       const Block& block = blocks_[b];
-      auto section = section_tangent<N, A>(geometries_[block.geometry], material_, slopes_of(state, b),
-                                           block.in_row ? x.in_row(block) : x.anywhere(block),
-                                           block.in_row ? d.in_row(block) : d.anywhere(block));
+      const ElementGeometry<Lanes>& g = geometries_[block.geometry];
+      const Corners<Lanes> place = x.corners(block), along = d.corners(block);
+      auto section = section_tangent<N, A>(g, material_, slopes_of(state, b), place, along);
+      if (selective_ && block.rectangle)
+        leave_unborne(g, motion_products(element_motion(g, place, along)), section);
       for (const Lanes* part : section.parts()) {
         store(*part, at);
         at += kLanes;
@@ -130,7 +156,9 @@ class ShellTerm final : public Shell {
     }
   }
 
-  [[nodiscard]] size_t section_count() const override { return 12 * slot_stride(); }
+  [[nodiscard]] size_t section_count() const override {
+    return SectionStiffness<Lanes>().parts().size() * slot_stride();
+  }
 
   DRAPEPLAN_FLATTEN void add_bounds(const std::vector<double>& sections, const std::vector<double>& lightness,
                                     NodalStiffness& stiffness) const override {
@@ -180,12 +208,12 @@ class ShellTerm final : public Shell {
       const ElementGeometry<Lanes>& g = geometries_[block.geometry];
       auto law = law_of(state, b, follow);
       double* before = &state.history[b * size_t(kLanes)];
+      const Lanes added(block.rectangle ? viscous_modulus_ : 0.0);
       FibreViscosity<Lanes, A> viscosity{
-          {Lanes(viscous) * g.half1 * g.half1, Lanes(viscous) * g.half2 * g.half2}, {}};
+          {Lanes(viscous) * g.half1 * g.half1 + added, Lanes(viscous) * g.half2 * g.half2 + added}, {}};
       for (size_t k = 0; k < kStrainSlots; ++k) viscosity.strain[k] = load(before + k * stride);
       Corners<Lanes> f, m;
-      const Corners<Lanes> at = block.in_row ? x.in_row(block) : x.anywhere(block),
-                           along = block.in_row ? d.in_row(block) : d.anywhere(block);
+      const Corners<Lanes> at = x.corners(block), along = d.corners(block);
       if (block.rectangle) {
         shell_forces<N, A, true>(g, material_, law, viscosity, at, along, f, m);
       } else {
@@ -230,8 +258,7 @@ class ShellTerm final : public Shell {
 
   void let_strains_grow(State& state, double by) const override {
     if constexpr (kRates) {
-      const size_t slots = 3 * size_t(N) + 2 * (A - 1);
-      for (size_t slot = 0; slot < slots; ++slot) {
+      for (size_t slot = 0; slot < kLawSlots; ++slot) {
         const bool angle = slot < 3 * size_t(N) && slot % 3 == 2;
         double* lagged = &state.history[(kStrainSlots + slot) * slot_stride()];
         for (size_t e = 0; e < slot_stride(); ++e) lagged[e] += angle && lagged[e] > 0 ? -by : by;
@@ -240,13 +267,14 @@ class ShellTerm final : public Shell {
   }
 
   [[nodiscard]] size_t history_count() const override {
-    return (kStrainSlots + (kRates ? 3 * size_t(N) + 2 * (A - 1) : 0)) * slot_stride();
+    return (kStrainSlots + (kRates ? kLawSlots : 0)) * slot_stride();
   }
 
  private:
   /// State::history has slots of one strain per element: mid-thickness strains of both fibres at the step
   /// before, by point across; then, with rates, the lagged strains of the law's slots.
   static constexpr size_t kStrainSlots = 2 * A;
+  static constexpr size_t kLawSlots = fibre_slot<N>(0, 0, A - 1) == 0 ? 3 * size_t(N) : 3 * size_t(N) + 2;
 
   size_t add_block(size_t first);
 
@@ -276,10 +304,25 @@ class ShellTerm final : public Shell {
     return shares;
   }
 
-  /// In the rest shape, with fibres and shear as stiff as given [Pa].
-  void add_steepest(double fibre, double shear, NodalStiffness& stiffness) const {
-    const auto section = steepest_section(material_.thickness, fibre, shear);
+  /// Modulus that mass on edges bears, with a margin for what couples stretch to curvature [Pa].
+  [[nodiscard]] double borne_fibre() const { return (1 + kBorneMargin) * fibre_slope_; }
+
+  /// Takes away what mass on edges bears. It acts along the edges; fibres in between are at a small angle,
+  /// and the square of its sine is left.
+  void leave_unborne(const ElementGeometry<Lanes>& g, const MotionProducts<Lanes>& m,
+                     SectionStiffness<Lanes>& section) const {
+    const Lanes off1 = g.across1 * g.across1 * (m.hh - m.a1h * m.a1h / m.a11) / m.a11;
+    const Lanes off2 = g.across2 * g.across2 * (m.hh - m.a2h * m.a2h / m.a22) / m.a22;
+    section.fibre1 = unborne(section.fibre1, off1, Lanes(borne_stretch()));
+    section.fibre2 = unborne(section.fibre2, off2, Lanes(borne_stretch()));
+  }
+
+  /// In the rest shape, with one section for elements whose fibres added mass may bear and one for others.
+  void add_steepest(const SectionStiffness<double>& borne, const SectionStiffness<double>& others,
+                    NodalStiffness& stiffness) const {
+    const std::vector<char> can_be_borne = this->borne();
     for (size_t e = 0; e < mesh_.quads.size(); ++e) {
+      const auto& section = can_be_borne[e] ? borne : others;
       const auto& quad = mesh_.quads[e];
       CornerShares<double> shares{{1, 1, 1, 1}, {0, 0, 0, 0}};
       for (size_t c = 0; c < 4; ++c) shares.twin[c] = quad[c] == quad[(c + 1) % 4] ? 1 : 0;
@@ -325,7 +368,9 @@ class ShellTerm final : public Shell {
   double fibre_slope_, slow_shear_slope_, shear_slope_;  ///< steepest, instantaneous ones with rates [Pa]
   double
       viscous_mass_;  ///< damping ratio times scaled mass per area, over the middle point's weight [kg/m^3]
-  double lag_rate_ = 0;  ///< of lagged strains, in the simulation's time [1/s]
+  bool selective_;
+  double viscous_modulus_ = 0;  ///< of fibres that added mass bears, over the middle point's weight [Pa]
+  double lag_rate_ = 0;         ///< of lagged strains, in the simulation's time [1/s]
   std::conditional_t<kRates, RateTables, NoTables> tables_;
   std::vector<ElementGeometry<double>> geometry_;
   std::vector<Block> blocks_;

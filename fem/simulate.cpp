@@ -70,12 +70,16 @@ struct Clock {
 
 /// The step from the state's positions to the next: chosen anew every `step_interval` steps, and cut at the
 /// end of the run.
-void choose_step(const Model& model, const Clock& clock, State& state, StepScratch& scratch) {
+void choose_step(const Model& model, const Clock& clock, State& state, Workspace& work) {
   const FemOptions& options = model.scene().options;
   if (options.step_interval == 0) {
     state.dt = model.dt();
   } else if (state.step % options.step_interval == 0) {
-    state.stable_dt = stable_step(model, state, scratch);
+    state.stable_dt = stable_step(model, state, work.step);
+    if (model.fibre_inertia()) {
+      model.fibre_inertia()->aim(state);
+      work.inertia.ready = false;
+    }
     state.dt = options.step_safety * state.stable_dt;
     if (state.step == 0) state.dt_before = state.dt;
   }
@@ -122,7 +126,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
       request.observe(take_snapshot(model, state, drive));
       ++frame;
     }
-    choose_step(model, clock, state, work.step);
+    choose_step(model, clock, state, work);
     compute_forces(model, state, work);
     kick_nodes(model, state, work);
     if (model.rig()) kick_pads(model, state, drive, work);

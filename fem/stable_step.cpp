@@ -41,6 +41,13 @@ class Tangent {
     return std::sqrt(model_.inverse_inertia()[size_t(n)]);
   }
 
+  void add_forces(const VectorField& force, Modes& out) const {
+    for (Eigen::Index n = 0; n < nodes_; ++n) {
+      const auto k = size_t(n);
+      out.segment<3>(6 * n) += weight(n) * Eigen::Vector3d(force.x[k], force.y[k], force.z[k]);
+    }
+  }
+
   /// Weighted forces at the state moved by step * u; directors stay unit to first order.
   Modes at(const Modes& u, double step) {
     trial_ = state_;
@@ -63,12 +70,13 @@ class Tangent {
     trial_.history = state_.history;  // as it was before the forces
     model_.shell().let_strains_grow(trial_, kOffTheKink + kGrowth);
     model_.terms().front()->forces(trial_, work_.entries.data());
+    if (model_.fibre_inertia()) add_inertia(model_, trial_, work_);
     Modes out = Modes::Zero(size());
+    if (model_.fibre_inertia()) add_forces(work_.force, out);
     for (const Forces& entry : work_.entries) {
+      if (!model_.fibre_inertia()) add_forces(entry.force, out);
       for (Eigen::Index n = 0; n < nodes_; ++n) {
         const auto k = size_t(n);
-        out.segment<3>(6 * n) +=
-            weight(n) * Eigen::Vector3d(entry.force.x[k], entry.force.y[k], entry.force.z[k]);
         if (entry.moment.x.empty()) continue;
         const Eigen::Vector3d d(state_.d.x[k], state_.d.y[k], state_.d.z[k]);
         Eigen::Vector3d moment(entry.moment.x[k], entry.moment.y[k], entry.moment.z[k]);
@@ -129,8 +137,11 @@ double stable_step(const Model& model, State& state, StepScratch& scratch) {
       store(load(&sum.rotation[n]) * slack + load(&others.rotation[n]), &sum.rotation[n]);
       store(load(&others.damping[n]), &sum.damping[n]);
     }
-    model.lighten(sum, state.lightness);
-    if (round == 1) return model.stable_dt(sum);
+    const double rate = model.highest_rate(sum);
+    model.lighten(sum, rate, state.lightness);
+    if (round > 1) continue;
+    const double step = model.stable_dt(rate);
+    return model.fibre_inertia() ? std::min(step, model.selective_dt()) : step;
   }
 }
 

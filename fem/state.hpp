@@ -22,9 +22,10 @@ enum class Book {
   stop,
   load,
   release,
-  grip
+  grip,
+  added_mass
 };
-inline constexpr size_t kBooks = 11;
+inline constexpr size_t kBooks = 12;
 
 /// A rigid pad: its centre on the ply's mid-surface, its orientation and its half-step velocities.
 struct PadState {
@@ -61,7 +62,10 @@ struct State {
   VectorField anchor;           ///< where a node sticks to the mold [m]; empty without friction
   std::vector<double> stuck;    ///< 1: the node touched the mold at the last step; empty without friction
   std::vector<double> history;  ///< what elements remember of their strains; see shell.cpp
-  std::vector<PadState> pads;   ///< empty without a rig
+  /// Directions of edges along warp and weft when the step was last chosen, by their first nodes; empty
+  /// without selective mass scaling.
+  std::array<VectorField, 2> edges;
+  std::vector<PadState> pads;  ///< empty without a rig
   /// How the bounds of elements were spread over nodes when the step was last chosen [padded]: see
   /// CornerShares.
   std::vector<double> lightness;

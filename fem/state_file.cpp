@@ -13,7 +13,7 @@
 namespace drapeplan {
 namespace {
 
-constexpr std::string_view kMagic = "drapeplan state 2\n";
+constexpr std::string_view kMagic = "drapeplan state 3\n";
 constexpr size_t kWord = 8;  // bytes
 
 /// States every part of a state to `visit`, which reads or writes it.
@@ -21,7 +21,7 @@ template <class StateType, class Visit>
 void visit_state(StateType& s, const Visit& visit) {
   visit(s.step);
   for (auto* value : {&s.time, &s.dt, &s.dt_before, &s.stable_dt}) visit(*value);
-  for (auto* field : {&s.x, &s.v, &s.d, &s.w, &s.anchor}) {
+  for (auto* field : {&s.x, &s.v, &s.d, &s.w, &s.anchor, &s.edges[0], &s.edges[1]}) {
     for (auto* part : {&field->x, &field->y, &field->z}) visit(*part);
   }
   visit(s.stuck);

@@ -34,6 +34,10 @@ Workspace::Workspace(const Model& model)
   }
   if (entries.size() > kMostEntries) throw std::logic_error("more entries of forces than kMostEntries");
   has_tied.assign(padded(model.node_count()) / size_t(kLanes), false);
+  if (model.fibre_inertia()) {
+    inertia = model.fibre_inertia()->scratch();
+    force = VectorField(model.node_count());
+  }
   if (!model.rig()) return;
   rig = model.rig()->scratch();
   force = moment = VectorField(model.node_count());
@@ -43,18 +47,31 @@ Workspace::Workspace(const Model& model)
 void compute_forces(const Model& model, State& state, Workspace& work) {
   for (size_t k = 0; k < work.first.size(); ++k)
     model.terms()[k]->forces(state, &work.entries[work.first[k]]);
+  if (model.fibre_inertia()) add_inertia(model, state, work);
+}
+
+void add_inertia(const Model& model, const State& state, Workspace& work) {
+  for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
+    Vec3<Lanes> sum = work.entries[0].force.lanes(n);
+    for (size_t k = 1; k < work.entries.size(); ++k) {
+      if (!work.entries[k].idle(n / size_t(kChunk))) sum = sum + work.entries[k].force.lanes(n);
+    }
+    work.force.set_lanes(n, sum);
+  }
+  model.fibre_inertia()->filter(state, work.inertia, work.force);
 }
 
 // One pass over the nodes: forces are summed, velocities kicked and the work of every entry on free nodes
 // booked, with the mean of both velocities. Held nodes move by other rules and are booked with theirs.
 void kick_nodes(const Model& model, State& state, Workspace& work) {
   const double h = state.kick_time(), alpha = model.alpha();
+  const bool inertia = model.fibre_inertia().has_value();
   const Lanes keep((1 - 0.5 * alpha * h) / (1 + 0.5 * alpha * h)), gain(h / (1 + 0.5 * alpha * h)), half(0.5);
   const Lanes zero(0.0);
   std::array<Lanes, kMostEntries> power;
   std::array<Vec3<Lanes>, kMostEntries> forces;
   power.fill(zero);
-  Lanes damping(0.0);
+  Lanes damping(0.0), added_power(0.0);
   std::array<size_t, kMostEntries> active;
   size_t count = 0;
   for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
@@ -67,6 +84,8 @@ void kick_nodes(const Model& model, State& state, Workspace& work) {
     const Vec3<Lanes> internal = work.entries[0].force.lanes(n);
     Vec3<Lanes> force = internal;
     for (size_t a = 0; a < count; ++a) force = force + (forces[a] = work.entries[active[a]].force.lanes(n));
+    const Vec3<Lanes> of_terms = force;
+    if (inertia) force = work.force.lanes(n);
     Vec3<Lanes> moment = work.entries[0].moment.lanes(n);
     const Vec3<Lanes> internal_moment = moment;
     for (const size_t k : work.turning) moment = moment + work.entries[k].moment.lanes(n);
@@ -85,12 +104,14 @@ void kick_nodes(const Model& model, State& state, Workspace& work) {
     stdx::where(mobility == zero, free) = zero;
     stdx::where(turning == zero, free_turning) = zero;
     const Vec3<Lanes> mean_v = free * (v + v_new), mean_w = free_turning * (w + w_new);
+    if (inertia) added_power += dot(force - of_terms, mean_v);
     power[0] += dot(internal, mean_v) + dot(internal_moment, mean_w);
     for (size_t a = 0; a < count; ++a) power[active[a]] += dot(forces[a], mean_v);
     for (const size_t k : work.turning) power[k] += dot(work.entries[k].moment.lanes(n), mean_w);
     damping += load(&model.mass()[n]) * dot(mean_v, mean_v) + load(&model.inertia()[n]) * dot(mean_w, mean_w);
   }
   for (size_t k = 0; k < work.entries.size(); ++k) work.power[k] = stdx::reduce(power[k]);
+  work.added_power = stdx::reduce(added_power);
   work.damping = alpha * stdx::reduce(damping);
 }
 
@@ -111,14 +132,22 @@ void kick_pads(const Model& model, State& state, const RigDrive& drive, Workspac
 void book_work(const Model& model, State& state, const Workspace& work) {
   const double h = state.kick_time();
   std::array<double, kMostEntries> power = work.power;
+  double added_power = work.added_power;
   for (const int node : model.guided()) {
     const auto n = size_t(node);
     const Eigen::Vector3d v = at(work.mean_v, n), w = at(work.mean_w, n);
-    for (size_t k = 0; k < work.entries.size(); ++k) power[k] += at(work.entries[k].force, n).dot(v);
+    Eigen::Vector3d of_terms(0, 0, 0);
+    for (size_t k = 0; k < work.entries.size(); ++k) {
+      const Eigen::Vector3d force = at(work.entries[k].force, n);
+      power[k] += force.dot(v);
+      of_terms += force;
+    }
+    if (model.fibre_inertia()) added_power += (at(work.force, n) - of_terms).dot(v);
     power[0] += at(work.entries[0].moment, n).dot(w);
     for (const size_t k : work.turning) power[k] += at(work.entries[k].moment, n).dot(w);
   }
   for (size_t k = 0; k < work.entries.size(); ++k) state.work[size_t(work.entries[k].book)] += h * power[k];
+  state.work[size_t(Book::added_mass)] += h * added_power;
   state.work[size_t(Book::damping)] -= h * work.damping;
 }
 

@@ -28,13 +28,19 @@ struct Workspace {
   double damping = 0;                        ///< power that mass damping takes from free nodes [W]
   VectorField mean_v, mean_w;                ///< means of the half-step velocities of guided nodes
   std::vector<char> has_tied;                ///< by lanes of nodes: some belong to a pad
-  VectorField force, moment;                 ///< of all entries, where has_tied; empty without a rig
+  /// Of all entries, and of added mass; where has_tied, or everywhere with selective scaling.
+  VectorField force, moment;
+  double added_power = 0;  ///< of added mass on free nodes [W]
+  FibreInertiaScratch inertia;
   StepScratch step;
   RigScratch rig;
 };
 
 /// Forces of all terms at the state's positions.
 void compute_forces(const Model& model, State& state, Workspace& work);
+
+/// The last part of compute_forces: their sums, with what mass added to fibres makes of them.
+void add_inertia(const Model& model, const State& state, Workspace& work);
 
 /// Velocities of free nodes from the half step before t to the one after it, and their means.
 void kick_nodes(const Model& model, State& state, Workspace& work);

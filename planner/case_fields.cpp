@@ -181,6 +181,9 @@ void visit_fem(FieldVisitor& v, FemOptions& f) {
            Dimension::none, from(1, 2)});
   v.field({"mass_scaling", &f.mass_scaling, "Factor on the mass; gravity acts on the unscaled mass",
            Dimension::none, from(1, 1e6)});
+  v.field({"selective_scaling", &f.selective_scaling,
+           "The step may be this many times longer: mass is added to the stretch of fibres alone; 1: none",
+           Dimension::none, from(1, 8)});
   v.field({"target_step", &f.target_step, "Mass is added to nodes where the step would be smaller; 0: none",
            Dimension::time, from(0, 1)});
   v.field({"time_scaling", &f.time_scaling, "The schedule is played this many times faster than written",

@@ -1,0 +1,213 @@
+#include "fem/fibre_inertia.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drapeplan {
+namespace {
+
+using NodesOfLanes = std::array<int, size_t(kLanes)>;
+
+bool in_row(const int* nodes) {
+  for (int l = 1; l < kLanes; ++l) {
+    if (nodes[l] != nodes[0] + l) return false;
+  }
+  return true;
+}
+
+Lanes pick(const double* values, const int* nodes) {
+  return Lanes([&](auto l) { return values[size_t(nodes[size_t(l)])]; });
+}
+
+/// Values of nodes that mostly follow each other.
+Lanes load_at(const std::vector<double>& values, const int* nodes, bool row) {
+  return row ? load(&values[size_t(nodes[0])]) : pick(values.data(), nodes);
+}
+Vec3<Lanes> load_at(const VectorField& field, const int* nodes, bool row) {
+  return {load_at(field.x, nodes, row), load_at(field.y, nodes, row), load_at(field.z, nodes, row)};
+}
+
+void store_at(const Lanes& value, std::vector<double>& values, const NodesOfLanes& nodes) {
+  if (in_row(nodes.data())) return store(value, &values[size_t(nodes[0])]);
+  for (size_t l = 0; l < size_t(kLanes); ++l) values[size_t(nodes[l])] = value[l];
+}
+
+}  // namespace
+
+FibreInertia::FibreInertia(const Mesh& mesh, const std::vector<char>& borne, double stretch, double rate,
+                           std::vector<double> mobility, std::vector<std::vector<int>> tied)
+    : count_(mesh.node_count()),
+      mobility_(std::move(mobility)),
+      tied_(std::move(tied)),
+      lines_{lines_of(mesh, borne, 0), lines_of(mesh, borne, 1)} {
+  for (Lines& lines : lines_) {
+    for (double& mass : lines.mass) mass *= stretch / (rate * rate);
+  }
+}
+
+/// Masses per stretch / rate^2: with the fibre stretched differently at both edges, an element of length a
+/// and width b is not stiffer than a spring b / (2 a) at each.
+FibreInertia::Lines FibreInertia::lines_of(const Mesh& mesh, const std::vector<char>& borne, int along) {
+  const int count = mesh.node_count();
+  Lines lines;
+  lines.mass.assign(padded(count), 0.0);
+  lines.ahead.assign(padded(count), count);
+  lines.behind = lines.ahead;
+  for (size_t e = 0; e < mesh.quads.size(); ++e) {
+    if (!borne[e]) continue;
+    const auto& quad = mesh.quads[e];
+    const Eigen::Vector2d size =
+        (mesh.rest[size_t(quad[2])] - mesh.rest[size_t(quad[0])]).cwiseAbs();  // of a rectangle
+    for (size_t c = 0; c < 4; ++c) {
+      int from = quad[c], to = quad[(c + 1) % 4];
+      const Eigen::Vector2d edge = mesh.rest[size_t(to)] - mesh.rest[size_t(from)];
+      if (std::abs(edge[along]) < std::abs(edge[1 - along])) continue;
+      if (edge[along] < 0) std::swap(from, to);
+      lines.mass[size_t(from)] += 0.5 * size[1 - along] / size[along];
+      lines.ahead[size_t(from)] = to;
+      lines.behind[size_t(to)] = from;
+    }
+  }
+  order_sweeps(lines, count);
+  // A node without an edge may name any other, since its direction is zero: so most lanes stay in a row.
+  for (int n = 1; n < count; ++n) {
+    int &ahead = lines.ahead[size_t(n)], &behind = lines.behind[size_t(n)];
+    const int after = lines.ahead[size_t(n - 1)] + 1, before = lines.behind[size_t(n - 1)] + 1;
+    if (lines.mass[size_t(n)] == 0 && after < count) ahead = after;
+    if (behind == count && before < count && lines.mass[size_t(before)] == 0) behind = before;
+  }
+  return lines;
+}
+
+/// Lines in the order of their first nodes, kLanes side by side; shorter ones end in the edge that is none.
+void FibreInertia::order_sweeps(Lines& lines, int count) {
+  std::vector<int> starts;
+  for (int n = 0; n < count; ++n) {
+    if (lines.mass[size_t(n)] > 0 && lines.behind[size_t(n)] == count) starts.push_back(n);
+  }
+  for (size_t first = 0; first < starts.size(); first += size_t(kLanes)) {
+    lines.groups.push_back(lines.sweep.size());
+    Nodes edges;
+    for (size_t l = 0; l < size_t(kLanes); ++l)
+      edges[l] = first + l < starts.size() ? starts[first + l] : count;
+    const auto is_edge = [&](int n) { return lines.mass[size_t(n)] > 0; };
+    while (std::any_of(edges.begin(), edges.end(), is_edge)) {
+      lines.sweep.push_back(edges);
+      for (int& edge : edges) {
+        if (edge < count) edge = lines.ahead[size_t(edge)];
+        if (edge < count && !is_edge(edge)) edge = count;
+      }
+    }
+  }
+  lines.groups.push_back(lines.sweep.size());
+}
+
+FibreInertiaScratch FibreInertia::scratch() const {
+  FibreInertiaScratch s;
+  size_t longest = 0;
+  for (size_t fibre = 0; fibre < kFibres; ++fibre) {
+    const size_t size = (lines_[fibre].sweep.size() + 1) * size_t(kLanes);  // one row of zeros behind
+    s.factors[fibre] = {std::vector<double>(size), std::vector<double>(size)};
+    longest = std::max(longest, size);
+  }
+  s.sweep.resize(longest);
+  s.pull.resize(mobility_.size());
+  return s;
+}
+
+void FibreInertia::aim(State& state) const {
+  for (size_t fibre = 0; fibre < kFibres; ++fibre) {
+    const Lines& lines = lines_[fibre];
+    VectorField& n = state.edges[fibre];
+    for (size_t k = 0; k < size_t(count_); k += size_t(kLanes)) {
+      const bool row = in_row(&lines.ahead[k]);
+      const Vec3<Lanes> edge = load_at(state.x, &lines.ahead[k], row) - state.x.lanes(k);
+      Lanes length, inverse;
+      root_and_inverse(dot(edge, edge), length, inverse);
+      std::experimental::where(load(&lines.mass[k]) == Lanes(0.0), inverse) = Lanes(0.0);
+      Vec3<Lanes> unit = inverse * edge;
+      n.set_lanes(k, unit);
+    }
+  }
+}
+
+void FibreInertia::factor(const State& state, FibreInertiaScratch& s) const {
+  s.mobility = mobility_;
+  for (size_t pad = 0; pad < tied_.size(); ++pad) {
+    if (state.pads[pad].released) continue;
+    for (const int node : tied_[pad]) s.mobility[size_t(node)] = 0;
+  }
+  factor(lines_[0], 0.5, state.edges[0], s.mobility, s.factors[0]);
+  factor(lines_[1], 1, state.edges[1], s.mobility, s.factors[1]);
+  s.ready = true;
+}
+
+void FibreInertia::factor(const Lines& lines, double share, const VectorField& n,
+                          const std::vector<double>& mobility, FibreInertiaScratch::Factors& factors) {
+  const auto direction = [&n](int k) { return Vec3<double>{n.x[size_t(k)], n.y[size_t(k)], n.z[size_t(k)]}; };
+  for (size_t group = 0; group + 1 < lines.groups.size(); ++group) {
+    for (size_t row = lines.groups[group]; row < lines.groups[group + 1]; ++row) {
+      for (size_t l = 0; l < size_t(kLanes); ++l) {
+        double &below = factors.below[row * size_t(kLanes) + l],
+               &inverse = factors.inverse_pivot[row * size_t(kLanes) + l];
+        const int k = lines.sweep[row][l];
+        below = inverse = 0;
+        if (lines.mass[size_t(k)] == 0) continue;
+        const double here = mobility[size_t(k)], there = mobility[size_t(lines.ahead[size_t(k)])];
+        double pivot = 1 / (share * lines.mass[size_t(k)]) + here + there;
+        if (row > lines.groups[group]) {
+          const double off = -here * dot(direction(lines.sweep[row - 1][l]), direction(k));
+          below = off * factors.inverse_pivot[(row - 1) * size_t(kLanes) + l];
+          pivot -= below * off;
+        }
+        inverse = 1 / pivot;
+      }
+    }
+  }
+}
+
+void FibreInertia::pass(const Lines& lines, const FibreInertiaScratch::Factors& factors, const VectorField& n,
+                        FibreInertiaScratch& s, VectorField& force) const {
+  for (size_t k = 0; k < size_t(count_); k += size_t(kLanes)) {
+    const int* ahead = &lines.ahead[k];
+    const bool row = in_row(ahead);
+    const Vec3<Lanes> apart =
+        load_at(s.mobility, ahead, row) * load_at(force, ahead, row) - load(&s.mobility[k]) * force.lanes(k);
+    store(dot(apart, n.lanes(k)), &s.pull[k]);
+  }
+  for (size_t group = 0; group + 1 < lines.groups.size(); ++group) {
+    const size_t first = lines.groups[group], end = lines.groups[group + 1];
+    Lanes value(0.0);
+    for (size_t row = first; row < end; ++row) {
+      const size_t at = row * size_t(kLanes);
+      const int* nodes = lines.sweep[row].data();
+      value = load_at(s.pull, nodes, in_row(nodes)) - load(&factors.below[at]) * value;
+      store(value, &s.sweep[at]);
+    }
+    Lanes below(0.0);
+    value = below;
+    for (size_t row = end; row-- > first;) {
+      const size_t at = row * size_t(kLanes);
+      value = load(&factors.inverse_pivot[at]) * load(&s.sweep[at]) - below * value;
+      below = load(&factors.below[at]);
+      store_at(value, s.pull, lines.sweep[row]);
+    }
+  }
+  for (size_t k = 0; k < size_t(count_); k += size_t(kLanes)) {
+    const int* behind = &lines.behind[k];
+    const bool row = in_row(behind);
+    force.set_lanes(k, force.lanes(k) + load(&s.pull[k]) * n.lanes(k) -
+                           load_at(s.pull, behind, row) * load_at(n, behind, row));
+  }
+}
+
+void FibreInertia::filter(const State& state, FibreInertiaScratch& s, VectorField& force) const {
+  const auto released = size_t(
+      std::count_if(state.pads.begin(), state.pads.end(), [](const PadState& pad) { return pad.released; }));
+  if (!s.ready || s.released != released) factor(state, s);
+  s.released = released;
+  for (const size_t fibre : {size_t(0), size_t(1), size_t(0)})
+    pass(lines_[fibre], s.factors[fibre], state.edges[fibre], s, force);
+}
+
+}  // namespace drapeplan
