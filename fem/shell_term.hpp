@@ -285,7 +285,7 @@ class ShellTerm final : public Shell {
   /// State::history has slots of one strain per element: mid-thickness strains of both fibres at the step
   /// before, by point across; then, with rates, the lagged strains of the law's slots.
   static constexpr size_t kStrainSlots = 2 * A;
-  static constexpr size_t kLawSlots = fibre_slot<N>(0, 0, A - 1) == 0 ? 3 * size_t(N) : 3 * size_t(N) + 2;
+  static constexpr size_t kLawSlots = 3 * size_t(N) + 2 * size_t(A - 1);
 
   size_t add_block(size_t first);
 
