@@ -161,7 +161,7 @@ Ply rectangle() {
 /// An L with an oblique edge: lines of different lengths, some in two pieces; triangles and moved nodes at
 /// the edge bear nothing.
 Ply outline() {
-  const Polygon shape{{-0.06, -0.05}, {0.06, -0.05}, {0.06, -0.01}, {0.01, 0.005}, {0.0, 0.05}, {-0.06, 0.05}};
+  const Polygon shape{{-0.1, -0.07}, {0.1, -0.07}, {0.1, -0.02}, {0.02, 0.01}, {0.02, 0.07}, {-0.1, 0.07}};
   Mesh mesh = outline_mesh(shape, 0.01);
   std::vector<char> borne = make_shell(mesh, test::woven_fabric(), {})->borne();
   return Ply(std::move(mesh), std::move(borne)).crumple(0.001);
@@ -281,8 +281,7 @@ TEST(FibreInertia, IsBorneByRectanglesAlongTheFibresOnly) {
     if (!ply.borne[e]) ++others;
     const auto& quad = ply.mesh.quads[e];
     for (size_t c = 0; c < 4 && ply.borne[e]; ++c) {
-      const Eigen::Vector2d side =
-          ply.mesh.rest[size_t(quad[(c + 1) % 4])] - ply.mesh.rest[size_t(quad[c])];
+      const Eigen::Vector2d side = ply.mesh.rest[size_t(quad[(c + 1) % 4])] - ply.mesh.rest[size_t(quad[c])];
       EXPECT_LE(side.cwiseAbs().minCoeff(), 1e-9 * side.norm()) << e;
       EXPECT_GT(side.norm(), 0) << e;
     }
@@ -291,21 +290,30 @@ TEST(FibreInertia, IsBorneByRectanglesAlongTheFibresOnly) {
   EXPECT_GE(ply.borne.size() - others, 30U);
 }
 
-/// A 2x2 rig with interlinks over the corner of the seed's mold, with friction; one pad lets go at 4.2 s.
+/// 3x3 grippers with interlinks over the middle of the seed's mold, the middle one fixed, with friction.
+/// Masses and time are scaled as in the shipped cases.
 Scene drape(double selective) {
-  Scene scene = test::corner_drape(0.02);
+  Scene scene = test::middle_drape(0.205, 0.017);
+  scene.options.mass_scaling = 20;
+  scene.options.time_scaling = 4;
   scene.options.selective_scaling = selective;
   return scene;
 }
 Schedule drop(const Scene& scene) {
-  Schedule schedule = test::drop(scene, {.above = 2, .touch = 4, .end = 5});
-  schedule.release = {std::nullopt, std::nullopt, std::nullopt, 4.2};
+  return test::drop(scene, {.above = 2, .touch = 4, .end = 5});
+}
+constexpr double kRelease = 4.2;  // [s]
+/// A pad in the corner lets go when all lie on the mold.
+Schedule drop_and_release(const Scene& scene) {
+  Schedule schedule = drop(scene);
+  schedule.release.assign(schedule.paths.size(), std::nullopt);
+  schedule.release.back() = kRelease;
   return schedule;
 }
 
 TEST(SelectiveScaling, GoesOnWithTheSameBitsThroughAFile) {
   const Scene scene = drape(4);
-  const Schedule schedule = drop(scene);
+  const Schedule schedule = drop_and_release(scene);
   const RunResult whole = simulate(Model(scene), {.schedule = &schedule});
   ASSERT_EQ(whole.report.status, RunStatus::done) << whole.report.message;
   const fs::path file =
@@ -352,6 +360,20 @@ TEST(SelectiveScaling, KeepsItsBooksAndAddsNextToNoWork) {
   EXPECT_LE(largest, 0.01 * run.state.record.energy);
 }
 
+// Light nodes that a pad has let go must not feel edges as the pad did: with the filter of the pad for one
+// step, that step alone gave a tenth of all energy.
+TEST(SelectiveScaling, GivesNoEnergyWhenAPadLetsGo) {
+  const Scene scene = drape(4);
+  const Schedule schedule = drop_and_release(scene);
+  const RunResult run = simulate(Model(scene), {.schedule = &schedule, .pause = kRelease + 0.1});
+  ASSERT_EQ(run.report.status, RunStatus::paused) << run.report.message;
+  ASSERT_TRUE(run.state.pads.back().released);
+  const double added = run.state.work[size_t(Book::added_mass)] / run.state.record.energy;
+  std::printf("work of added mass after the release: %.1e of the largest energy\n", added);
+  EXPECT_LE(std::abs(added), 0.01);
+  EXPECT_LE(run.report.energy.balance_error, 1e-8);
+}
+
 TEST(SelectiveScaling, MakesFewerStepsAndTheSameDrape) {
   RunResult runs[2];
   for (const int k : {0, 1}) {
@@ -365,7 +387,19 @@ TEST(SelectiveScaling, MakesFewerStepsAndTheSameDrape) {
     apart = std::max(apart, (runs[0].final.position[n] - runs[1].final.position[n]).norm());
   const double fewer = double(runs[0].report.steps) / double(runs[1].report.steps);
   std::printf("%.2f times fewer steps, %.3f mm apart\n", fewer, 1e3 * apart);
-  EXPECT_GE(fewer, 3);
+  EXPECT_GE(fewer, 2.2);    // 4 over what the estimate for the state gains on the steepest slopes
+  EXPECT_LE(apart, 0.002);  // a move of the start by 1e-12 m does up to 0.5 mm: fem/README.md
+}
+
+// Two by two light grippers hold nothing but each other: what is not symmetric about the mass of edges at
+// pads feeds the motion there once they touch. That must not pass for a result.
+TEST(SelectiveScaling, IsBlamedWhereItGivesEnergy) {
+  Scene scene = test::corner_drape(0.02);
+  scene.options.selective_scaling = 4;
+  const Schedule schedule = test::drop(scene, {.above = 2, .touch = 4, .end = 5});
+  const RunResult run = simulate(Model(scene), {.schedule = &schedule});
+  EXPECT_EQ(run.report.status, RunStatus::diverged);
+  EXPECT_NE(run.report.message.find("lower selective_scaling"), std::string::npos) << run.report.message;
 }
 
 TEST(SelectiveScaling, PlaysAStepThatIsNotAboveTheTrueOne) {
