@@ -4,35 +4,25 @@
 #include <cmath>
 
 namespace drapeplan {
-namespace {
 
-using NodesOfLanes = std::array<int, size_t(kLanes)>;
-
-bool in_row(const int* nodes) {
-  for (int l = 1; l < kLanes; ++l) {
-    if (nodes[l] != nodes[0] + l) return false;
-  }
-  return true;
+FibreInertia::Row::Row(const Nodes& of) : nodes(of) {
+  consecutive = true;
+  for (int l = 1; l < kLanes; ++l) consecutive = consecutive && nodes[size_t(l)] == nodes[0] + l;
 }
 
-Lanes pick(const double* values, const int* nodes) {
+Lanes FibreInertia::Row::load_from(const std::vector<double>& values) const {
+  if (consecutive) return load(&values[size_t(nodes[0])]);
   return Lanes([&](auto l) { return values[size_t(nodes[size_t(l)])]; });
 }
 
-/// Values of nodes that mostly follow each other.
-Lanes load_at(const std::vector<double>& values, const int* nodes, bool row) {
-  return row ? load(&values[size_t(nodes[0])]) : pick(values.data(), nodes);
-}
-Vec3<Lanes> load_at(const VectorField& field, const int* nodes, bool row) {
-  return {load_at(field.x, nodes, row), load_at(field.y, nodes, row), load_at(field.z, nodes, row)};
+Vec3<Lanes> FibreInertia::Row::load_from(const VectorField& field) const {
+  return {load_from(field.x), load_from(field.y), load_from(field.z)};
 }
 
-void store_at(const Lanes& value, std::vector<double>& values, const NodesOfLanes& nodes) {
-  if (in_row(nodes.data())) return store(value, &values[size_t(nodes[0])]);
+void FibreInertia::Row::store_to(std::vector<double>& values, const Lanes& value) const {
+  if (consecutive) return store(value, &values[size_t(nodes[0])]);
   for (size_t l = 0; l < size_t(kLanes); ++l) values[size_t(nodes[l])] = value[l];
 }
-
-}  // namespace
 
 FibreInertia::FibreInertia(const Mesh& mesh, const std::vector<char>& borne, double stretch, double rate,
                            std::vector<double> mobility, std::vector<std::vector<int>> tied)
@@ -52,7 +42,7 @@ FibreInertia::Lines FibreInertia::lines_of(const Mesh& mesh, const std::vector<c
   Lines lines;
   lines.mass.assign(padded(count), 0.0);
   lines.ahead.assign(padded(count), count);
-  lines.behind = lines.ahead;
+  std::vector<int> behind = lines.ahead;
   for (size_t e = 0; e < mesh.quads.size(); ++e) {
     if (!borne[e]) continue;
     const auto& quad = mesh.quads[e];
@@ -65,37 +55,46 @@ FibreInertia::Lines FibreInertia::lines_of(const Mesh& mesh, const std::vector<c
       if (edge[along] < 0) std::swap(from, to);
       lines.mass[size_t(from)] += 0.5 * size[1 - along] / size[along];
       lines.ahead[size_t(from)] = to;
-      lines.behind[size_t(to)] = from;
+      behind[size_t(to)] = from;
     }
   }
-  order_sweeps(lines, count);
-  // A node without an edge may name any other, since its direction is zero: so most lanes stay in a row.
-  for (int n = 1; n < count; ++n) {
-    int &ahead = lines.ahead[size_t(n)], &behind = lines.behind[size_t(n)];
-    const int after = lines.ahead[size_t(n - 1)] + 1, before = lines.behind[size_t(n - 1)] + 1;
-    if (lines.mass[size_t(n)] == 0 && after < count) ahead = after;
-    if (behind == count && before < count && lines.mass[size_t(before)] == 0) behind = before;
+  order_sweeps(behind, lines);
+  // A node without an edge may name any other, since its direction is zero: so most rows are consecutive.
+  for (size_t n = 1; n < size_t(count); ++n) {
+    const int after = lines.ahead[n - 1] + 1, before = behind[n - 1] + 1;
+    if (lines.mass[n] == 0 && after < count) lines.ahead[n] = after;
+    if (behind[n] == count && before < count && lines.mass[size_t(before)] == 0) behind[n] = before;
+  }
+  for (size_t n = 0; n < size_t(count); n += size_t(kLanes)) {
+    const auto row = [n](const std::vector<int>& of) {
+      Nodes nodes;
+      std::copy_n(of.begin() + std::ptrdiff_t(n), size_t(kLanes), nodes.begin());
+      return Row(nodes);
+    };
+    lines.ends.push_back(row(lines.ahead));
+    lines.behind.push_back(row(behind));
   }
   return lines;
 }
 
 /// Lines in the order of their first nodes, kLanes side by side; shorter ones end in the edge that is none.
-void FibreInertia::order_sweeps(Lines& lines, int count) {
+void FibreInertia::order_sweeps(const std::vector<int>& behind, Lines& lines) {
+  const auto is_edge = [&lines](int n) { return lines.mass[size_t(n)] > 0; };
   std::vector<int> starts;
-  for (int n = 0; n < count; ++n) {
-    if (lines.mass[size_t(n)] > 0 && lines.behind[size_t(n)] == count) starts.push_back(n);
+  const int none = behind.back();
+  for (int n = 0; n < none; ++n) {
+    if (is_edge(n) && behind[size_t(n)] == none) starts.push_back(n);
   }
   for (size_t first = 0; first < starts.size(); first += size_t(kLanes)) {
     lines.groups.push_back(lines.sweep.size());
     Nodes edges;
     for (size_t l = 0; l < size_t(kLanes); ++l)
-      edges[l] = first + l < starts.size() ? starts[first + l] : count;
-    const auto is_edge = [&](int n) { return lines.mass[size_t(n)] > 0; };
+      edges[l] = first + l < starts.size() ? starts[first + l] : none;
     while (std::any_of(edges.begin(), edges.end(), is_edge)) {
-      lines.sweep.push_back(edges);
+      lines.sweep.emplace_back(edges);
       for (int& edge : edges) {
-        if (edge < count) edge = lines.ahead[size_t(edge)];
-        if (edge < count && !is_edge(edge)) edge = count;
+        if (edge != none) edge = lines.ahead[size_t(edge)];
+        if (!is_edge(edge)) edge = none;
       }
     }
   }
@@ -120,8 +119,7 @@ void FibreInertia::aim(State& state) const {
     const Lines& lines = lines_[fibre];
     VectorField& n = state.edges[fibre];
     for (size_t k = 0; k < size_t(count_); k += size_t(kLanes)) {
-      const bool row = in_row(&lines.ahead[k]);
-      const Vec3<Lanes> edge = load_at(state.x, &lines.ahead[k], row) - state.x.lanes(k);
+      const Vec3<Lanes> edge = lines.ends[k / size_t(kLanes)].load_from(state.x) - state.x.lanes(k);
       Lanes length, inverse;
       root_and_inverse(dot(edge, edge), length, inverse);
       std::experimental::where(load(&lines.mass[k]) == Lanes(0.0), inverse) = Lanes(0.0);
@@ -150,13 +148,13 @@ void FibreInertia::factor(const Lines& lines, double share, const VectorField& n
       for (size_t l = 0; l < size_t(kLanes); ++l) {
         double &below = factors.below[row * size_t(kLanes) + l],
                &inverse = factors.inverse_pivot[row * size_t(kLanes) + l];
-        const int k = lines.sweep[row][l];
+        const int k = lines.sweep[row].nodes[l];
         below = inverse = 0;
         if (lines.mass[size_t(k)] == 0) continue;
         const double here = mobility[size_t(k)], there = mobility[size_t(lines.ahead[size_t(k)])];
         double pivot = 1 / (share * lines.mass[size_t(k)]) + here + there;
         if (row > lines.groups[group]) {
-          const double off = -here * dot(direction(lines.sweep[row - 1][l]), direction(k));
+          const double off = -here * dot(direction(lines.sweep[row - 1].nodes[l]), direction(k));
           below = off * factors.inverse_pivot[(row - 1) * size_t(kLanes) + l];
           pivot -= below * off;
         }
@@ -166,13 +164,13 @@ void FibreInertia::factor(const Lines& lines, double share, const VectorField& n
   }
 }
 
-void FibreInertia::pass(const Lines& lines, const FibreInertiaScratch::Factors& factors, const VectorField& n,
-                        FibreInertiaScratch& s, VectorField& force) const {
+DRAPEPLAN_FLATTEN void FibreInertia::pass(const Lines& lines, const FibreInertiaScratch::Factors& factors,
+                                          const VectorField& n, FibreInertiaScratch& s,
+                                          VectorField& force) const {
   for (size_t k = 0; k < size_t(count_); k += size_t(kLanes)) {
-    const int* ahead = &lines.ahead[k];
-    const bool row = in_row(ahead);
+    const Row& ends = lines.ends[k / size_t(kLanes)];
     const Vec3<Lanes> apart =
-        load_at(s.mobility, ahead, row) * load_at(force, ahead, row) - load(&s.mobility[k]) * force.lanes(k);
+        ends.load_from(s.mobility) * ends.load_from(force) - load(&s.mobility[k]) * force.lanes(k);
     store(dot(apart, n.lanes(k)), &s.pull[k]);
   }
   for (size_t group = 0; group + 1 < lines.groups.size(); ++group) {
@@ -180,8 +178,7 @@ void FibreInertia::pass(const Lines& lines, const FibreInertiaScratch::Factors& 
     Lanes value(0.0);
     for (size_t row = first; row < end; ++row) {
       const size_t at = row * size_t(kLanes);
-      const int* nodes = lines.sweep[row].data();
-      value = load_at(s.pull, nodes, in_row(nodes)) - load(&factors.below[at]) * value;
+      value = lines.sweep[row].load_from(s.pull) - load(&factors.below[at]) * value;
       store(value, &s.sweep[at]);
     }
     Lanes below(0.0);
@@ -190,14 +187,13 @@ void FibreInertia::pass(const Lines& lines, const FibreInertiaScratch::Factors& 
       const size_t at = row * size_t(kLanes);
       value = load(&factors.inverse_pivot[at]) * load(&s.sweep[at]) - below * value;
       below = load(&factors.below[at]);
-      store_at(value, s.pull, lines.sweep[row]);
+      lines.sweep[row].store_to(s.pull, value);
     }
   }
   for (size_t k = 0; k < size_t(count_); k += size_t(kLanes)) {
-    const int* behind = &lines.behind[k];
-    const bool row = in_row(behind);
-    force.set_lanes(k, force.lanes(k) + load(&s.pull[k]) * n.lanes(k) -
-                           load_at(s.pull, behind, row) * load_at(n, behind, row));
+    const Row& behind = lines.behind[k / size_t(kLanes)];
+    force.set_lanes(
+        k, force.lanes(k) + load(&s.pull[k]) * n.lanes(k) - behind.load_from(s.pull) * behind.load_from(n));
   }
 }
 

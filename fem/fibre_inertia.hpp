@@ -58,16 +58,27 @@ class FibreInertia {
   static constexpr size_t kFibres = 2;
   using Nodes = std::array<int, size_t(kLanes)>;
 
+  /// Nodes of lanes; most follow each other.
+  struct Row {
+    Nodes nodes;
+    bool consecutive = false;
+    explicit Row(const Nodes& of);
+    [[nodiscard]] Lanes load_from(const std::vector<double>& values) const;
+    [[nodiscard]] Vec3<Lanes> load_from(const VectorField& field) const;
+    void store_to(std::vector<double>& values, const Lanes& value) const;
+  };
+
   /// The edges of one fibre, named by their first nodes; a node has one at most.
   struct Lines {
-    std::vector<double> mass;        ///< added [kg]; 0: no edge [padded]
-    std::vector<int> ahead, behind;  ///< node at the edge's end; first node of the edge that ends here
-    std::vector<Nodes> sweep;        ///< edges in rows: one of each of kLanes lines side by side
-    std::vector<size_t> groups;      ///< first row of each group of lines, and the end
+    std::vector<double> mass;       ///< added [kg]; 0: no edge [padded]
+    std::vector<int> ahead;         ///< node at the end of the edge that starts here
+    std::vector<Row> ends, behind;  ///< by block of nodes: these; first nodes of the edges that end here
+    std::vector<Row> sweep;         ///< edges in rows: one of each of kLanes lines side by side
+    std::vector<size_t> groups;     ///< first row of each group of lines, and the end
   };
 
   static Lines lines_of(const Mesh& mesh, const std::vector<char>& borne, int along);
-  static void order_sweeps(Lines& lines, int count);
+  static void order_sweeps(const std::vector<int>& behind, Lines& lines);
   void factor(const State& state, FibreInertiaScratch& scratch) const;
   static void factor(const Lines& lines, double share, const VectorField& n,
                      const std::vector<double>& mobility, FibreInertiaScratch::Factors& factors);

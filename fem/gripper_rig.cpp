@@ -31,6 +31,28 @@ void set(VectorField& field, size_t n, const Vector3d& value) {
   field.x[n] = value.x(), field.y[n] = value.y(), field.z[n] = value.z();
 }
 
+Vec3<Lanes> lanes_of(const Vector3d& v) {
+  return {Lanes(v.x()), Lanes(v.y()), Lanes(v.z())};
+}
+
+Vec3<Lanes> cross(const Vec3<Lanes>& a, const Vec3<Lanes>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+Vector3d sum_of(const Vec3<Lanes>& v) {
+  namespace stdx = std::experimental;
+  return {stdx::reduce(v.x), stdx::reduce(v.y), stdx::reduce(v.z)};
+}
+
+/// Stores lanes that are tied, and leaves others.
+void set_tied(VectorField& field, size_t at, const Lanes& tied, const Vec3<Lanes>& value) {
+  namespace stdx = std::experimental;
+  const auto mask = tied > Lanes(0.5);
+  stdx::where(mask, value.x).copy_to(&field.x[at], stdx::element_aligned);
+  stdx::where(mask, value.y).copy_to(&field.y[at], stdx::element_aligned);
+  stdx::where(mask, value.z).copy_to(&field.z[at], stdx::element_aligned);
+}
+
 /// Mass damping, centred: v+ = keep v- + gain force / mass.
 struct Damped {
   double keep, gain;
@@ -65,7 +87,24 @@ GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>
     if (pad.last == pad.first) {
       throw std::invalid_argument(gripper_name(rig, g) + " has no ply node under its pad: refine the mesh");
     }
+    lay_patches(pad);
     pads_.push_back(pad);
+  }
+}
+
+void GripperRig::lay_patches(Pad& pad) const {
+  for (auto k = size_t(pad.first); k < size_t(pad.last); ++k) {
+    const auto n = size_t(tied_[k]);
+    if (pad.patches.empty() || n >= pad.patches.back().at + size_t(kLanes)) {
+      pad.patches.emplace_back();
+      pad.patches.back().at = n;
+      pad.patches.back().offset1 = pad.patches.back().offset2 = Lanes(0.0);
+    }
+    Patch& patch = pad.patches.back();
+    const size_t lane = n - patch.at;
+    patch.tied[lane] = 1;
+    patch.offset1[lane] = nodes_[k].offset.x();
+    patch.offset2[lane] = nodes_[k].offset.y();
   }
 }
 
@@ -100,7 +139,6 @@ std::vector<double> GripperRig::mass_ratios(const std::vector<double>& mass,
 
 RigScratch GripperRig::scratch() const {
   RigScratch s;
-  for (auto* list : {&s.force, &s.moment, &s.mean_v, &s.mean_w}) list->resize(tied_.size());
   for (auto* list : {&s.free_v, &s.free_w, &s.stop, &s.joint_v, &s.actuator}) list->resize(pads_.size());
   s.links = links_.scratch();
   return s;
@@ -183,7 +221,8 @@ void GripperRig::let_go(State& state, const RigDrive& drive) const {
 }
 
 /// Velocities at t + dt/2 as if there were no constraints.
-void GripperRig::free_velocities(State& state, const RigDrive& drive, double alpha, RigScratch& s) const {
+void GripperRig::free_velocities(State& state, const RigDrive& drive, double alpha, const TiedFields& tied,
+                                 RigScratch& s) const {
   const double h = state.kick_time();
   const Damped damped(h, alpha);
   for (size_t g = 0; g < pads_.size(); ++g) {
@@ -196,9 +235,16 @@ void GripperRig::free_velocities(State& state, const RigDrive& drive, double alp
     state.record.actuator_force =
         std::max(state.record.actuator_force, s.actuator[g].lpNorm<Eigen::Infinity>());
     Vector3d force = s.actuator[g], moment = arm.cross(s.actuator[g]);
-    for (auto k = size_t(body.first); !pad.released && k < size_t(body.last); ++k) {
-      force += s.force[k];
-      moment += (turn * nodes_[k].offset).cross(s.force[k]) + normal.cross(s.moment[k]);
+    if (!pad.released) {
+      Vec3<Lanes> of_nodes = lanes_of(Vector3d::Zero()), about = of_nodes, on_directors = of_nodes;
+      for (const Patch& patch : body.patches) {
+        const Vec3<Lanes> f = patch.tied * tied.force.lanes(patch.at);
+        of_nodes = of_nodes + f;
+        about = about + cross(state.x.lanes(patch.at) - lanes_of(pad.centre), f);
+        on_directors = on_directors + patch.tied * tied.moment.lanes(patch.at);
+      }
+      force += sum_of(of_nodes);
+      moment += sum_of(about) + normal.cross(sum_of(on_directors));
     }
     LinkBody& next = s.links.bodies[g];
     next = {.inverse_mass = 1 / mass, .inverse_inertia = 1 / inertia, .centre = pad.centre, .arm = arm};
@@ -213,7 +259,7 @@ void GripperRig::free_velocities(State& state, const RigDrive& drive, double alp
 
 /// Nodes of a released pad move on their own. `kick_nodes` has damped their velocities already, as of any
 /// node.
-void GripperRig::kick_released(State& state, const Pad& body, double alpha, RigScratch& s) const {
+void GripperRig::kick_released(State& state, const Pad& body, double alpha, const TiedFields& tied) const {
   const double h = state.kick_time();
   const Damped damped(h, alpha);
   double damping = 0;
@@ -221,12 +267,13 @@ void GripperRig::kick_released(State& state, const Pad& body, double alpha, RigS
     const auto n = size_t(tied_[k]);
     const Tied& node = nodes_[k];
     const Vector3d d = get(state.d, n), v = get(state.v, n), w = get(state.w, n);
-    const Vector3d moment = s.moment[k] - s.moment[k].dot(d) * d;
-    const Vector3d v_new = v + damped.gain / node.mass * s.force[k];
+    const Vector3d all = get(tied.moment, n), moment = all - all.dot(d) * d;
+    const Vector3d v_new = v + damped.gain / node.mass * get(tied.force, n);
     const Vector3d w_new = w + damped.gain / node.inertia * moment;
-    s.mean_v[k] = 0.5 * (v / damped.keep + v_new);
-    s.mean_w[k] = 0.5 * (w / damped.keep + w_new);
-    damping += node.mass * s.mean_v[k].squaredNorm() + node.inertia * s.mean_w[k].squaredNorm();
+    const Vector3d mean_v = 0.5 * (v / damped.keep + v_new), mean_w = 0.5 * (w / damped.keep + w_new);
+    damping += node.mass * mean_v.squaredNorm() + node.inertia * mean_w.squaredNorm();
+    set(tied.mean_v, n, mean_v);
+    set(tied.mean_w, n, mean_w);
     set(state.v, n, v_new);
     set(state.w, n, w_new);
   }
@@ -234,7 +281,7 @@ void GripperRig::kick_released(State& state, const Pad& body, double alpha, RigS
 }
 
 /// Takes over the velocities that meet the constraints; books work; gives tied nodes their mean velocities.
-void GripperRig::book_pad(State& state, size_t g, double alpha, RigScratch& s) const {
+void GripperRig::book_pad(State& state, size_t g, double alpha, const TiedFields& tied, RigScratch& s) const {
   const double h = state.kick_time();
   const Pad& body = pads_[g];
   PadState& pad = state.pads[g];
@@ -249,21 +296,23 @@ void GripperRig::book_pad(State& state, size_t g, double alpha, RigScratch& s) c
            (body.mass_of(pad) * s.free_v[g].dot(mean_v) + body.inertia_of(pad) * s.free_w[g].dot(mean_w)));
   pad.velocity = next.velocity;
   pad.angular_velocity = next.angular_velocity;
-  if (pad.released) return kick_released(state, body, alpha, s);
-  const Eigen::Matrix3d turn = pad.rotation.toRotationMatrix();
-  for (auto k = size_t(body.first); k < size_t(body.last); ++k) {
-    s.mean_v[k] = mean_v + mean_w.cross(turn * nodes_[k].offset);
-    s.mean_w[k] = mean_w.cross(turn.col(2));
+  if (pad.released) return kick_released(state, body, alpha, tied);
+  const Vec3<Lanes> v = lanes_of(mean_v), w = lanes_of(mean_w), centre = lanes_of(pad.centre);
+  const Vec3<Lanes> turn = lanes_of(mean_w.cross(pad.rotation * Vector3d::UnitZ()));
+  for (const Patch& patch : body.patches) {
+    set_tied(tied.mean_v, patch.at, patch.tied, v + cross(w, state.x.lanes(patch.at) - centre));
+    set_tied(tied.mean_w, patch.at, patch.tied, turn);
   }
 }
 
-void GripperRig::kick(State& state, const RigDrive& drive, double alpha, RigScratch& s) const {
+void GripperRig::kick(State& state, const RigDrive& drive, double alpha, const TiedFields& tied,
+                      RigScratch& s) const {
   let_go(state, drive);
-  free_velocities(state, drive, alpha, s);
+  free_velocities(state, drive, alpha, tied, s);
   const LinkSystem::Outcome links = links_.meet(state.dt, s.links);
   state.record.link_error = std::max(state.record.link_error, links.error);
   s.converged = s.converged && links.converged;
-  for (size_t g = 0; g < pads_.size(); ++g) book_pad(state, g, alpha, s);
+  for (size_t g = 0; g < pads_.size(); ++g) book_pad(state, g, alpha, tied, s);
   book(state, Book::interlink, links_.work(s.links, s.joint_v));
 }
 
@@ -278,13 +327,17 @@ void GripperRig::drift(State& state) const {
       pad.rotation = (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * pad.rotation).normalized();
     if (pad.released) continue;  // drift_nodes has moved its nodes
     const Eigen::Matrix3d rotation = pad.rotation.toRotationMatrix();
-    for (auto k = size_t(pads_[g].first); k < size_t(pads_[g].last); ++k) {
-      const auto n = size_t(tied_[k]);
-      const Vector3d offset = rotation * nodes_[k].offset, d = rotation.col(2);
-      set(state.x, n, pad.centre + offset);
-      set(state.v, n, pad.velocity + pad.angular_velocity.cross(offset));
-      set(state.d, n, d);
-      set(state.w, n, pad.angular_velocity.cross(d));
+    const Vector3d d = rotation.col(2);
+    const Vec3<Lanes> along1 = lanes_of(rotation.col(0)), along2 = lanes_of(rotation.col(1));
+    const Vec3<Lanes> centre = lanes_of(pad.centre), v = lanes_of(pad.velocity),
+                      spin = lanes_of(pad.angular_velocity);
+    const Vec3<Lanes> normal = lanes_of(d), w = lanes_of(pad.angular_velocity.cross(d));
+    for (const Patch& patch : pads_[g].patches) {
+      const Vec3<Lanes> offset = patch.offset1 * along1 + patch.offset2 * along2;
+      set_tied(state.x, patch.at, patch.tied, centre + offset);
+      set_tied(state.v, patch.at, patch.tied, v + cross(spin, offset));
+      set_tied(state.d, patch.at, patch.tied, normal);
+      set_tied(state.w, patch.at, patch.tied, w);
     }
   }
 }

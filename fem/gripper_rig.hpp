@@ -18,11 +18,14 @@
 
 namespace drapeplan {
 
-/// Scratch of one run: forces on tied nodes, free and mean velocities, the constraint system.
+/// What pads and their nodes tell each other in a step; other nodes are left alone.
+struct TiedFields {
+  const VectorField &force, &moment;  ///< on nodes and directors [N], [N m]
+  VectorField &mean_v, &mean_w;       ///< means of the half-step velocities [m/s], [1/s]
+};
+
+/// Scratch of one run: free and mean velocities, the constraint system.
 struct RigScratch {
-  std::vector<Eigen::Vector3d> force, moment;   ///< in: on tied nodes and their directors [N], [N m]
-  std::vector<Eigen::Vector3d> mean_v, mean_w;  ///< out: means of the half-step velocities of tied nodes and
-                                                ///< directors
   std::vector<Eigen::Vector3d> free_v, free_w;  ///< mean velocities of pads before constraints: what damping
                                                 ///< sees
   std::vector<Eigen::Vector3d> stop, joint_v;   ///< moments of stops [N m]; mean velocities of joints
@@ -75,7 +78,8 @@ class GripperRig {
   /// alpha), actuators, interlinks, stops and releases into state.work, and the largest actuator force and
   /// link error into state.record. Needs what kick_nodes has done to the velocities of tied nodes: damping
   /// alone.
-  void kick(State& state, const RigDrive& drive, double alpha, RigScratch& scratch) const;
+  void kick(State& state, const RigDrive& drive, double alpha, const TiedFields& tied,
+            RigScratch& scratch) const;
 
   /// Moves pads to t + dt and their nodes with them.
   void drift(State& state) const;
@@ -89,10 +93,17 @@ class GripperRig {
   void snapshot(const State& state, const RigDrive& drive, Snapshot& out) const;
 
  private:
+  /// Up to kLanes nodes of a pad that follow each other.
+  struct Patch {
+    size_t at = 0;           ///< first node
+    Lanes tied{0.0};         ///< 1 for lanes of the pad, 0 for others
+    Lanes offset1, offset2;  ///< in the pad's frame [m]
+  };
   struct Pad {
     double mass = 0, inertia = 0;            ///< with the tied nodes [kg], [kg m^2]
     double bare_mass = 0, bare_inertia = 0;  ///< of the pad alone
     int first = 0, last = 0;                 ///< range in tied_
+    std::vector<Patch> patches;              ///< the same nodes
     [[nodiscard]] double mass_of(const PadState& pad) const { return pad.released ? bare_mass : mass; }
     [[nodiscard]] double inertia_of(const PadState& pad) const {
       return pad.released ? bare_inertia : inertia;
@@ -103,9 +114,11 @@ class GripperRig {
     double mass = 0, inertia = 0;  ///< of node and director [kg], [kg m^2]
   };
 
-  void free_velocities(State& state, const RigDrive& drive, double alpha, RigScratch& scratch) const;
-  void book_pad(State& state, size_t g, double alpha, RigScratch& scratch) const;
-  void kick_released(State& state, const Pad& body, double alpha, RigScratch& scratch) const;
+  void lay_patches(Pad& pad) const;
+  void free_velocities(State& state, const RigDrive& drive, double alpha, const TiedFields& tied,
+                       RigScratch& scratch) const;
+  void book_pad(State& state, size_t g, double alpha, const TiedFields& tied, RigScratch& scratch) const;
+  void kick_released(State& state, const Pad& body, double alpha, const TiedFields& tied) const;
   [[nodiscard]] double kinetic_energy(const State& state, size_t g) const;
 
   RigOptions rig_;

@@ -8,16 +8,6 @@ namespace {
 
 namespace stdx = std::experimental;
 
-Eigen::Vector3d at(const VectorField& field, size_t n) {
-  return {field.x[n], field.y[n], field.z[n]};
-}
-
-void set(VectorField& field, size_t n, const Eigen::Vector3d& value) {
-  field.x[n] = value.x();
-  field.y[n] = value.y();
-  field.z[n] = value.z();
-}
-
 }  // namespace
 
 StepScratch::StepScratch(const Model& model)
@@ -34,6 +24,11 @@ Workspace::Workspace(const Model& model)
   }
   if (entries.size() > kMostEntries) throw std::logic_error("more entries of forces than kMostEntries");
   has_tied.assign(padded(model.node_count()) / size_t(kLanes), false);
+  std::vector<char> has_guided = has_tied;
+  for (const int node : model.guided()) has_guided[size_t(node / kLanes)] = true;
+  for (size_t block = 0; block < has_guided.size(); ++block) {
+    if (has_guided[block]) guided.push_back(block * size_t(kLanes));
+  }
   if (model.fibre_inertia()) {
     inertia = model.fibre_inertia()->scratch();
     force = VectorField(model.node_count());
@@ -116,36 +111,31 @@ void kick_nodes(const Model& model, State& state, Workspace& work) {
 }
 
 void kick_pads(const Model& model, State& state, const RigDrive& drive, Workspace& work) {
-  const std::vector<int>& tied = model.rig()->tied();
-  for (size_t k = 0; k < tied.size(); ++k) {
-    const auto n = size_t(tied[k]);
-    work.rig.force[k] = at(work.force, n);
-    work.rig.moment[k] = at(work.moment, n);
-  }
-  model.rig()->kick(state, drive, model.alpha(), work.rig);
-  for (size_t k = 0; k < tied.size(); ++k) {
-    set(work.mean_v, size_t(tied[k]), work.rig.mean_v[k]);
-    set(work.mean_w, size_t(tied[k]), work.rig.mean_w[k]);
-  }
+  model.rig()->kick(state, drive, model.alpha(), {work.force, work.moment, work.mean_v, work.mean_w},
+                    work.rig);
 }
 
 void book_work(const Model& model, State& state, const Workspace& work) {
   const double h = state.kick_time();
-  std::array<double, kMostEntries> power = work.power;
-  double added_power = work.added_power;
-  for (const int node : model.guided()) {
-    const auto n = size_t(node);
-    const Eigen::Vector3d v = at(work.mean_v, n), w = at(work.mean_w, n);
-    Eigen::Vector3d of_terms(0, 0, 0);
+  std::array<Lanes, kMostEntries> on_guided;
+  on_guided.fill(Lanes(0.0));
+  Lanes added(0.0);
+  for (const size_t n : work.guided) {
+    const Vec3<Lanes> v = work.mean_v.lanes(n), w = work.mean_w.lanes(n);
+    Vec3<Lanes> force{Lanes(0.0), Lanes(0.0), Lanes(0.0)};
     for (size_t k = 0; k < work.entries.size(); ++k) {
-      const Eigen::Vector3d force = at(work.entries[k].force, n);
-      power[k] += force.dot(v);
-      of_terms += force;
+      if (work.entries[k].idle(n / size_t(kChunk))) continue;
+      const Vec3<Lanes> of_term = work.entries[k].force.lanes(n);
+      on_guided[k] += dot(of_term, v);
+      force = force + of_term;
     }
-    if (model.fibre_inertia()) added_power += (at(work.force, n) - of_terms).dot(v);
-    power[0] += at(work.entries[0].moment, n).dot(w);
-    for (const size_t k : work.turning) power[k] += at(work.entries[k].moment, n).dot(w);
+    on_guided[0] += dot(work.entries[0].moment.lanes(n), w);
+    for (const size_t k : work.turning) on_guided[k] += dot(work.entries[k].moment.lanes(n), w);
+    if (model.fibre_inertia()) added += dot(work.force.lanes(n) - force, v);
   }
+  std::array<double, kMostEntries> power = work.power;
+  for (size_t k = 0; k < work.entries.size(); ++k) power[k] += stdx::reduce(on_guided[k]);
+  const double added_power = work.added_power + stdx::reduce(added);
   for (size_t k = 0; k < work.entries.size(); ++k) state.work[size_t(work.entries[k].book)] += h * power[k];
   state.work[size_t(Book::added_mass)] += h * added_power;
   state.work[size_t(Book::damping)] -= h * work.damping;

@@ -27,6 +27,7 @@ struct Workspace {
   std::array<double, kMostEntries> power{};  ///< of entries on free nodes [W]
   double damping = 0;                        ///< power that mass damping takes from free nodes [W]
   VectorField mean_v, mean_w;                ///< means of the half-step velocities of guided nodes
+  std::vector<size_t> guided;                ///< first nodes of lanes where the mean velocities are not zero
   std::vector<char> has_tied;                ///< by lanes of nodes: some belong to a pad
   /// Of all entries, and of added mass; where has_tied, or everywhere with selective scaling.
   VectorField force, moment;
