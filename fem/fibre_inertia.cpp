@@ -4,6 +4,13 @@
 #include <cmath>
 
 namespace drapeplan {
+namespace {
+
+/// Of the mass, in each of the two passes along the warp: with a the mass over that of the nodes in some
+/// mode, (1 + a/4)^2 is never below a, the most that stiffness over squared rate can be there.
+constexpr double kWarpShare = 0.25;
+
+}  // namespace
 
 FibreInertia::Row::Row(const Nodes& of) : nodes(of) {
   consecutive = true;
@@ -135,7 +142,7 @@ void FibreInertia::factor(const State& state, FibreInertiaScratch& s) const {
     if (state.pads[pad].released) continue;
     for (const int node : tied_[pad]) s.mobility[size_t(node)] = 0;
   }
-  factor(lines_[0], 0.5, state.edges[0], s.mobility, s.factors[0]);
+  factor(lines_[0], kWarpShare, state.edges[0], s.mobility, s.factors[0]);
   factor(lines_[1], 1, state.edges[1], s.mobility, s.factors[1]);
   s.ready = true;
 }

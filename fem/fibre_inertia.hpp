@@ -8,9 +8,9 @@
 //   f - B^T (1/mu + B W B^T)^-1 B W f,
 //
 // which is (mass + B^T mu B) W f by Woodbury's identity, without forming it: 1/mu + B W B^T is tridiagonal
-// along each mesh line. Both fibres follow each other, half of warp, weft, half of warp, so that the mass
-// matrix is symmetric; in fixed order without the second half it is not, and drapes blow up within a few
-// thousand steps.
+// along each mesh line. Both fibres follow each other: a share of warp, weft, the same share of
+// warp, so that the mass matrix is symmetric; without the second pass it is not, and drapes blow up within a
+// few thousand steps.
 //
 // Source of the idea: selective mass scaling by a stiffness-proportional part of the mass matrix (Olovsson,
 // Simonsson, Unosson 2005); by lines and along fibres only: own.

@@ -19,6 +19,10 @@ constexpr double kServoStep = 0.5;
 /// use. The springs are some 30 times stiffer than those of free nodes then, and never govern the step.
 constexpr double kPadShare = 0.2;
 
+/// Share of what a node's own mass bears that its contact spring may use where added mass bears the fibres.
+/// With the dashpot it leaves a tenth for the rest, which is far less.
+constexpr double kBareShare = 0.5;
+
 /// Parts of a fingerprint that have no list of numbers of their own.
 void add_mold(Fnv1a& hash, const Mold& mold) {
   constexpr int kSamples = 17;  // per side: tells molds apart, whatever their shape
@@ -163,6 +167,7 @@ void Model::add_fibre_inertia(double rise) {
   fibre_inertia_.emplace(scene_.mesh, shell_->borne(), shell_->borne_stretch(), rate, std::move(mobility),
                          rig_ ? rig_->tied_by_pad() : std::vector<std::vector<int>>());
   selective_dt_ = stable_dt(rate);
+  shell_->set_borne_step(selective_dt_);
   stable_dt_ = std::min(stable_dt_, selective_dt_);
 }
 
@@ -193,12 +198,13 @@ void Model::add_contact(NodalStiffness& stiffness) {
   NodalStiffness slow(node_count());
   shell_->add_slow_stiffness(slow);
   double highest = contact_rise(options) * 2 / stable_dt(slow);
-  if (options.selective_scaling > 1) {
-    highest = contact_rise(options) * selective_rate_;
-    for (size_t k = 0; k < n; ++k) slow.translation[k] = own_mass_[k] * selective_rate_ * selective_rate_;
-  }
   ContactSprings springs{std::vector<double>(n), std::vector<double>(n)};
   for (size_t k = 0; k < n; ++k) springs.stiffness[k] = options.contact_stiffness * slow.translation[k];
+  if (options.selective_scaling > 1) {
+    highest = contact_rise(options) * selective_rate_;
+    const double most = kBareShare * selective_rate_ * selective_rate_;
+    for (size_t k = 0; k < n; ++k) springs.stiffness[k] = std::min(springs.stiffness[k], most * own_mass_[k]);
+  }
   for (const int node : rig_ ? rig_->tied() : std::vector<int>()) {
     const auto k = size_t(node);
     const double surplus = bearing_mass_[k] - own_mass_[k];

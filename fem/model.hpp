@@ -57,7 +57,7 @@ class Model {
 
   /// Stable step for all strains that the laws allow [s]; see stable_step() for that of a state.
   [[nodiscard]] double stable_dt() const { return stable_dt_; }
-  /// Largest step that mass added to fibres allows [s]; 0 without selective scaling.
+  /// Step at which mass added to fibres bears the steepest ones [s]; 0 without selective scaling.
   [[nodiscard]] double selective_dt() const { return selective_dt_; }
   /// The step played where it does not change with the state: step_safety times stable_dt [s].
   [[nodiscard]] double dt() const { return scene_.options.step_safety * stable_dt_; }
@@ -101,7 +101,7 @@ class Model {
 
   Scene scene_;
   std::vector<std::unique_ptr<Term>> terms_;
-  const Shell* shell_ = nullptr;
+  Shell* shell_ = nullptr;
   std::optional<GripperRig> rig_;
   std::optional<FibreInertia> fibre_inertia_;
   std::vector<double> mass_, inertia_, inverse_mass_, inverse_inertia_;

@@ -28,10 +28,13 @@ class Shell : public Term {
   virtual void add_borne_stiffness(NodalStiffness& stiffness) const = 0;
   /// By element: whether mass on its edges can bear its fibres.
   [[nodiscard]] virtual std::vector<char> borne() const = 0;
+  /// Tells at which step [s] mass on edges bears the steepest fibres: bulk viscosity damps them as well.
+  virtual void set_borne_step(double stable_dt) = 0;
   /// What that mass must bear: force per width and strain [N/m].
   [[nodiscard]] virtual double borne_stretch() const = 0;
   /// The section's tangents at a state, for add_bounds: section_count() numbers.
-  virtual void look_at_sections(const State& state, std::vector<double>& sections) const = 0;
+  /// @return the steepest force per width and strain of a fibre that added mass bears, over borne_stretch().
+  virtual double look_at_sections(const State& state, std::vector<double>& sections) const = 0;
   [[nodiscard]] virtual size_t section_count() const = 0;
   /// Adds bounds of all elements with these sections, times each node's lightness.
   /// @param lightness  of each node [padded], in (0, 1]: see CornerShares.

@@ -13,6 +13,12 @@ struct FibreStiffness {
   V uneven;   ///< difference of both points, halved [N/m]
   V couple;   ///< fibre force by curvature, magnitude [N]
   V bend;     ///< [N m]
+
+  /// Bound of the stretch at any place across.
+  [[nodiscard]] V steepest() const {
+    using std::abs, std::max;
+    return max(stretch, across) + abs(uneven);
+  }
 };
 
 /// Tangent of the section.

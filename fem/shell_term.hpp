@@ -94,7 +94,8 @@ class ShellTerm final : public Shell {
         shear_slope_(slow_shear_slope_),
         viscous_mass_(options.bulk_viscosity * options.mass_scaling * fabric.areal_density /
                       (SectionRule<N>::weight[N / 2] * fabric.thickness)),
-        selective_(options.selective_scaling > 1) {
+        selective_(options.selective_scaling > 1),
+        bulk_viscosity_(options.bulk_viscosity) {
     if constexpr (kRates) {
       tables_ = rate_tables(fabric);
       fibre_slope_ = tables_.fibre.largest_slope(tables_.gain);
@@ -103,7 +104,6 @@ class ShellTerm final : public Shell {
     }
     for (const auto& quad : mesh.quads) geometry_.push_back(element_geometry(mesh, quad));
     for (size_t first = 0; first < mesh.quads.size();) first += add_block(first);
-    if (selective_) viscous_modulus_ = options.bulk_viscosity * borne_fibre() / SectionRule<N>::weight[N / 2];
   }
 
   [[nodiscard]] std::string_view name() const override { return kRates ? "shell with rates" : "shell"; }
@@ -137,23 +137,34 @@ class ShellTerm final : public Shell {
     for (const Block& block : blocks_) list.insert(list.end(), size_t(block.used), block.rectangle);
     return list;
   }
+  void set_borne_step(double stable_dt) override {
+    viscous_borne_ =
+        bulk_viscosity_ * borne_fibre() * stable_dt * stable_dt / (4 * SectionRule<N>::weight[N / 2]);
+  }
   [[nodiscard]] double borne_stretch() const override { return borne_fibre() * material_.thickness; }
 
-  DRAPEPLAN_FLATTEN void look_at_sections(const State& state, std::vector<double>& sections) const override {
+  DRAPEPLAN_FLATTEN double look_at_sections(const State& state,
+                                            std::vector<double>& sections) const override {
     const Rows<const double> x(state.x), d(state.d);
     double* at = sections.data();
+    Lanes steepest(0.0);
     for (size_t b = 0; b < blocks_.size(); ++b) {
       const Block& block = blocks_[b];
       const ElementGeometry<Lanes>& g = geometries_[block.geometry];
       const Corners<Lanes> place = x.corners(block), along = d.corners(block);
       auto section = section_tangent<N, A>(g, material_, slopes_of(state, b), place, along);
-      if (selective_ && block.rectangle)
+      if (selective_ && block.rectangle) {
+        Lanes here = std::experimental::max(section.fibre1.steepest(), section.fibre2.steepest());
+        clear_idle(block, here);
+        steepest = std::experimental::max(steepest, here);
         leave_unborne(g, motion_products(element_motion(g, place, along)), section);
+      }
       for (const Lanes* part : section.parts()) {
         store(*part, at);
         at += kLanes;
       }
     }
+    return (1 + kBorneMargin) * std::experimental::hmax(steepest) / borne_stretch();
   }
 
   [[nodiscard]] size_t section_count() const override {
@@ -208,7 +219,7 @@ class ShellTerm final : public Shell {
       const ElementGeometry<Lanes>& g = geometries_[block.geometry];
       auto law = law_of(state, b, follow);
       double* before = &state.history[b * size_t(kLanes)];
-      const Lanes added(block.rectangle ? viscous_modulus_ : 0.0);
+      const Lanes added(block.rectangle ? 4 * viscous_borne_ / (state.stable_dt * state.stable_dt) : 0.0);
       FibreViscosity<Lanes, A> viscosity{
           {Lanes(viscous) * g.half1 * g.half1 + added, Lanes(viscous) * g.half2 * g.half2 + added}, {}};
       for (size_t k = 0; k < kStrainSlots; ++k) viscosity.strain[k] = load(before + k * stride);
@@ -369,8 +380,9 @@ class ShellTerm final : public Shell {
   double
       viscous_mass_;  ///< damping ratio times scaled mass per area, over the middle point's weight [kg/m^3]
   bool selective_;
-  double viscous_modulus_ = 0;  ///< of fibres that added mass bears, over the middle point's weight [Pa]
-  double lag_rate_ = 0;         ///< of lagged strains, in the simulation's time [1/s]
+  double bulk_viscosity_;
+  double viscous_borne_ = 0;  ///< the same of mass on edges, per volume and squared element length [Pa s^2]
+  double lag_rate_ = 0;       ///< of lagged strains, in the simulation's time [1/s]
   std::conditional_t<kRates, RateTables, NoTables> tables_;
   std::vector<ElementGeometry<double>> geometry_;
   std::vector<Block> blocks_;

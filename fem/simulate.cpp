@@ -150,6 +150,10 @@ RunResult simulate(const Model& model, const RunRequest& request) {
     report.status = RunStatus::diverged;
     report.message = "interlinks could not be kept at their length";
   }
+  if (report.message.empty() && !std::isfinite(state.time)) {
+    report.status = RunStatus::diverged;
+    report.message = "the stable step is not finite, after step " + std::to_string(state.step);
+  }
   if (report.message.empty()) {
     const bool paused = !rests && !clock.ended(state);
     report.message = rests ? "the ply is at rest" : paused ? "paused, to be continued" : "the time is over";

@@ -127,7 +127,7 @@ double stable_step(const Model& model, State& state, StepScratch& scratch) {
   for (const auto& term : model.terms()) {
     if (term.get() != &shell) term->add_tangent(state, others);
   }
-  shell.look_at_sections(state, scratch.sections);
+  const double steepest = shell.look_at_sections(state, scratch.sections);
   for (int round = state.step == 0 ? kFirstRounds : kRounds;; --round) {
     sum.clear();
     shell.add_bounds(scratch.sections, state.lightness, sum);
@@ -141,7 +141,8 @@ double stable_step(const Model& model, State& state, StepScratch& scratch) {
     model.lighten(sum, rate, state.lightness);
     if (round > 1) continue;
     const double step = model.stable_dt(rate);
-    return model.fibre_inertia() ? std::min(step, model.selective_dt()) : step;
+    // Mass on edges was made for the steepest fibre that the law has.
+    return model.fibre_inertia() ? std::min(step, model.selective_dt() / std::sqrt(steepest)) : step;
   }
 }
 
