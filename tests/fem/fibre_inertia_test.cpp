@@ -372,7 +372,8 @@ TEST(SelectiveScaling, GivesNoEnergyWhenAPadLetsGo) {
   ASSERT_TRUE(run.state.pads.back().released);
   const double added = run.state.work[size_t(Book::added_mass)] / run.state.record.energy;
   std::printf("work of added mass after the release: %.1e of the largest energy\n", added);
-  EXPECT_LE(std::abs(added), 0.01);
+  EXPECT_LE(added, 0.01);
+  EXPECT_GE(added, -0.03);  // the nodes spring off: mass on their edges takes its share
   EXPECT_LE(run.report.energy.balance_error, 1e-8);
 }
 
