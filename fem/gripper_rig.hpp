@@ -69,6 +69,10 @@ class GripperRig {
 
   [[nodiscard]] RigScratch scratch() const;
 
+  /// Pads whose suction has ended let go of their nodes; once more does nothing. To be called before the
+  /// step's forces where mass is added to fibres: on a light node it must not pull as on a pad.
+  void let_go(State& state, const RigDrive& drive) const;
+
   /// One step for the pads: from nodal forces to pad velocities at t + dt/2 that meet all constraints at t +
   /// dt; before it, pads whose suction has ended let go of their nodes. Books the work of damping (rate
   /// alpha), actuators, interlinks, stops and releases into state.work, and the largest actuator force and
@@ -110,7 +114,6 @@ class GripperRig {
     double mass = 0, inertia = 0;  ///< of node and director [kg], [kg m^2]
   };
 
-  void let_go(State& state, const RigDrive& drive) const;
   void lay_patches(Pad& pad) const;
   void free_velocities(State& state, const RigDrive& drive, double alpha, const TiedFields& tied,
                        RigScratch& scratch) const;

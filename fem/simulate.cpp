@@ -126,6 +126,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
       request.observe(take_snapshot(model, state, drive));
       ++frame;
     }
+    if (model.rig()) model.rig()->let_go(state, drive);
     choose_step(model, clock, state, work);
     compute_forces(model, state, work);
     kick_nodes(model, state, work);
