@@ -43,8 +43,8 @@ class FibreInertia {
   /// @param stretch   steepest force per width and strain of a fibre [N/m]
   /// @param rate      highest rate that the stretch of an edge may have [1/s]
   /// @param mobility  1 / mass of nodes that are on their own, 0 where they are held [1/kg, padded]
-  /// @param tied      nodes of each pad: while it holds them, an edge there pulls as from a place that does
-  ///                  not accelerate (a pad is some 1000 times heavier than a node)
+  /// @param tied      nodes of each pad: while it holds them, an edge there pulls as if the pad did not
+  ///                  accelerate, which is not quite symmetric: see fem/README.md for what that limits
   FibreInertia(const Mesh& mesh, const std::vector<char>& borne, double stretch, double rate,
                std::vector<double> mobility, std::vector<std::vector<int>> tied);
 
