@@ -35,6 +35,7 @@ struct BenchScene {
   double mesh_size = 0.005;
   int section_points = 3;
   bool rates = false;
+  double selective_scaling = 1;
 };
 
 std::vector<BenchScene> bench_scenes() {
@@ -46,7 +47,8 @@ std::vector<BenchScene> bench_scenes() {
           {"drape-5mm-1-point", Kind::drape, 0.005, 1},
           {"drape-5mm-5-points", Kind::drape, 0.005, 5},
           {"drape-5mm-rates", Kind::drape, 0.005, 3, true},
-          {"drape-5mm-5-points-rates", Kind::drape, 0.005, 5, true}};
+          {"drape-5mm-5-points-rates", Kind::drape, 0.005, 5, true},
+          {"drape-5mm-selective", Kind::drape, 0.005, 3, false, 4}};
 }
 
 double highest(const Mold& mold) {
@@ -68,6 +70,7 @@ Model model_of(const Case& value, const BenchScene& bench) {
   options.mesh_size = bench.mesh_size;
   options.section_points = bench.section_points;
   options.rates = bench.rates;
+  options.selective_scaling = bench.selective_scaling;
   Scene scene = scene_of(value, options);
   if (bench.kind != Kind::drape) {
     scene.rig.reset();
