@@ -221,18 +221,20 @@ std::string line_chart(const Chart& chart) {
   Svg svg(chart.width, chart.height, chart.title);
   svg.text({18, 26}, chart.title, {.size = 15, .bold = true});
   draw_axes(svg, x, y, chart.x_label, chart.y_label);
-  double legend = chart.width - kRight;
   for (size_t k = 0; k < chart.series.size(); ++k) {
     draw_series(svg, x, y, chart.series[k], series_colour(k, chart.series.size()));
   }
+  // From the right; what would cover the label of y goes a row up.
+  double legend = chart.width - kRight, base = 48;
   for (size_t k = chart.series.size(); k-- > 0;) {
     const ChartSeries& series = chart.series[k];
     if (series.name.empty()) continue;
-    svg.text({legend, 48}, series.name, {.size = 12, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
-    constexpr double kLetter = 5.8;  // mean width of a letter at this size
-    legend -= kLetter * double(series.name.size()) + 6;
-    svg.circle({legend, 44}, 4, {.fill = series_colour(k, chart.series.size())});
-    legend -= 18;
+    constexpr double kLetter = 5.8, kRow = 18;  // mean width of a letter at this size; height of a row
+    const double wide = kLetter * double(series.name.size()) + 6;
+    if (legend - wide < 2 * kLeft) legend = chart.width - kRight, base -= kRow;
+    svg.text({legend, base}, series.name, {.size = 12, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
+    svg.circle({legend - wide, base - 4}, 4, {.fill = series_colour(k, chart.series.size())});
+    legend -= wide + 18;
   }
   return svg.finish();
 }
