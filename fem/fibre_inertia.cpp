@@ -19,7 +19,7 @@ FibreInertia::Row::Row(const Nodes& of) : nodes(of) {
 
 Lanes FibreInertia::Row::load_from(const std::vector<double>& values) const {
   if (consecutive) return load(&values[size_t(nodes[0])]);
-  return Lanes([&](auto l) { return values[size_t(nodes[size_t(l)])]; });
+  return pick(values.data(), nodes);
 }
 
 Vec3<Lanes> FibreInertia::Row::load_from(const VectorField& field) const {

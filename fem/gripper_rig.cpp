@@ -307,7 +307,6 @@ void GripperRig::book_pad(State& state, size_t g, double alpha, const TiedFields
 
 void GripperRig::kick(State& state, const RigDrive& drive, double alpha, const TiedFields& tied,
                       RigScratch& s) const {
-  let_go(state, drive);
   free_velocities(state, drive, alpha, tied, s);
   const LinkSystem::Outcome links = links_.meet(state.dt, s.links);
   state.record.link_error = std::max(state.record.link_error, links.error);

@@ -69,15 +69,14 @@ class GripperRig {
 
   [[nodiscard]] RigScratch scratch() const;
 
-  /// Pads whose suction has ended let go of their nodes; once more does nothing. To be called before the
-  /// step's forces where mass is added to fibres: on a light node it must not pull as on a pad.
+  /// Pads whose suction has ended let go of their nodes; before the step's forces, since mass added to fibres
+  /// must not pull at a light node as at a pad. Books the difference of kinetic energy.
   void let_go(State& state, const RigDrive& drive) const;
 
   /// One step for the pads: from nodal forces to pad velocities at t + dt/2 that meet all constraints at t +
-  /// dt; before it, pads whose suction has ended let go of their nodes. Books the work of damping (rate
-  /// alpha), actuators, interlinks, stops and releases into state.work, and the largest actuator force and
-  /// link error into state.record. Needs what kick_nodes has done to the velocities of tied nodes: damping
-  /// alone.
+  /// dt. Books the work of damping (rate alpha), actuators, interlinks and stops into state.work, and the
+  /// largest actuator force and link error into state.record. Needs what kick_nodes has done to the
+  /// velocities of tied nodes: damping alone.
   void kick(State& state, const RigDrive& drive, double alpha, const TiedFields& tied,
             RigScratch& scratch) const;
 

@@ -5,6 +5,7 @@
 #include <immintrin.h>
 #endif
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <experimental/simd>
@@ -36,6 +37,11 @@ DRAPEPLAN_INLINE inline Lanes load(const double* at) {
 }
 DRAPEPLAN_INLINE inline void store(const Lanes& value, double* at) {
   value.copy_to(at, std::experimental::element_aligned);
+}
+
+/// Values at places of their own.
+DRAPEPLAN_INLINE inline Lanes pick(const double* values, const std::array<int, size_t(kLanes)>& at) {
+  return Lanes([&](auto l) { return values[size_t(at[size_t(l)])]; });
 }
 
 /// Every value one lane further; zero in the first.

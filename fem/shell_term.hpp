@@ -44,10 +44,7 @@ struct Rows {
     Corners<Lanes> out;
     for (size_t c = 0; c < 4; ++c) {
       const auto& node = block.node[c];
-      const auto pick = [&node](const double* values) {
-        return Lanes([&](auto l) { return values[size_t(node[size_t(l)])]; });
-      };
-      out[c] = {pick(part[0]), pick(part[1]), pick(part[2])};
+      out[c] = {pick(part[0], node), pick(part[1], node), pick(part[2], node)};
     }
     return out;
   }
@@ -306,8 +303,7 @@ class ShellTerm final : public Shell {
     for (size_t c = 0; c < 4; ++c) {
       const auto& node = block.node[c];
       const auto& next = block.node[(c + 1) % 4];
-      shares.lightness[c] = block.in_row ? load(&lightness[size_t(node[0])])
-                                         : Lanes([&](auto l) { return lightness[size_t(node[size_t(l)])]; });
+      shares.lightness[c] = block.in_row ? load(&lightness[size_t(node[0])]) : pick(lightness.data(), node);
       shares.twin[c] = block.twins
                            ? Lanes([&](auto l) { return node[size_t(l)] == next[size_t(l)] ? 1.0 : 0.0; })
                            : Lanes(0.0);

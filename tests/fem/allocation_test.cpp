@@ -141,6 +141,7 @@ TEST(Allocations, AreNoneInAStepOrALook) {
         state.stable_dt = stable_step(model, state, work.step);
         state.dt = scene.options.step_safety * state.stable_dt;
       }
+      model.rig()->let_go(state, drive);
       compute_forces(model, state, work);
       kick_nodes(model, state, work);
       kick_pads(model, state, drive, work);

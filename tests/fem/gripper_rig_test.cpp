@@ -46,6 +46,7 @@ struct Bench {
   }
   void step() {
     state.dt = state.dt_before = dt;
+    rig->let_go(state, {&schedule, 1});
     rig->kick(state, {&schedule, 1}, 0, {force, moment, mean_v, mean_w}, scratch);
     rig->drift(state);
     state.time = double(++state.step) * dt;
