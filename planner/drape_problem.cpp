@@ -46,8 +46,8 @@ Mesh mesh_of(const Case& value, double mesh_size) {
   std::vector<double> u,
       v;  // lines through the pads, so that these cover the same piece of ply on every mesh
   if (value.grippers) {
-    u = column_places(*value.grippers);
-    v = row_places(*value.grippers);
+    u = column_places(*value.grippers, mesh_size);
+    v = row_places(*value.grippers, mesh_size);
   }
   if (!value.ply.outline.empty()) return outline_mesh(value.ply.outline, mesh_size, u, v);
   return rectangle_mesh(value.ply.width, value.ply.height, mesh_size, u, v);
