@@ -121,7 +121,7 @@ TEST(CmaEs, SameSeedGivesTheSameBitsAndAnotherSeedDoesNot) {
       for (Eigen::Index k = 0; k < x.cols(); ++k) values[k] = sphere(x.col(k));
       search.tell(values);
     }
-    return search.best_x();
+    return Eigen::MatrixXd(search.ask());
   };
   EXPECT_TRUE((run(1).array() == run(1).array()).all());
   EXPECT_FALSE((run(1).array() == run(2).array()).all());
