@@ -1,6 +1,7 @@
 #include "fem/workspace.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 // Entry 0 is the shell's: it always has forces and moments.
 namespace drapeplan {
@@ -13,36 +14,44 @@ StepScratch step_scratch(const Model& model) {
   return model.scene().options.step_interval > 0 ? StepScratch(model) : StepScratch();
 }
 
+/// What the scene has that the kick must know of: chosen once, so that nothing is asked node by node.
+struct KickPolicy {
+  bool damping, inertia, pads;
+  bool others;  ///< terms beside the shell
+};
+
 // One pass over the nodes: forces are summed, velocities kicked and the work of every entry on free nodes
 // booked, with the mean of both velocities. Held nodes move by other rules and are booked with theirs.
-// Without damping `keep` is 1 and stays in the sum, so that the bits are those of the same formula.
-template <bool kDamping, bool kInertia, bool kPads>
+template <KickPolicy kHas>
 void kick(const Model& model, State& state, Workspace& work) {
   const double h = state.kick_time(), alpha = model.alpha();
   const Lanes keep((1 - 0.5 * alpha * h) / (1 + 0.5 * alpha * h)), gain(h / (1 + 0.5 * alpha * h)), half(0.5);
   const Lanes zero(0.0);
   std::array<Lanes, kMostEntries> power;
   std::array<Vec3<Lanes>, kMostEntries> forces;
-  power.fill(zero);
-  Lanes damping(0.0), added_power(0.0);
+  if constexpr (kHas.others) power.fill(zero);
+  Lanes internal_power(0.0), damping(0.0), added_power(0.0);
   std::array<size_t, kMostEntries> active;
   size_t count = 0;
+  const Forces& shell = work.entries[0];
   for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
-    if (n % size_t(kChunk) == 0) {
-      count = 0;
-      for (size_t k = 1; k < work.entries.size(); ++k) {
-        if (!work.entries[k].idle(n / size_t(kChunk))) active[count++] = k;
+    if constexpr (kHas.others) {
+      if (n % size_t(kChunk) == 0) {
+        count = 0;
+        for (size_t k = 1; k < work.entries.size(); ++k) {
+          if (!work.entries[k].idle(n / size_t(kChunk))) active[count++] = k;
+        }
       }
     }
-    const Vec3<Lanes> internal = work.entries[0].force.lanes(n);
-    Vec3<Lanes> force = internal;
-    for (size_t a = 0; a < count; ++a) force = force + (forces[a] = work.entries[active[a]].force.lanes(n));
+    const Vec3<Lanes> internal = shell.force.lanes(n), internal_moment = shell.moment.lanes(n);
+    Vec3<Lanes> force = internal, moment = internal_moment;
+    if constexpr (kHas.others) {
+      for (size_t a = 0; a < count; ++a) force = force + (forces[a] = work.entries[active[a]].force.lanes(n));
+      for (const size_t k : work.turning) moment = moment + work.entries[k].moment.lanes(n);
+    }
     const Vec3<Lanes> of_terms = force;
-    if constexpr (kInertia) force = work.force.lanes(n);
-    Vec3<Lanes> moment = work.entries[0].moment.lanes(n);
-    const Vec3<Lanes> internal_moment = moment;
-    for (const size_t k : work.turning) moment = moment + work.entries[k].moment.lanes(n);
-    if constexpr (kPads) {
+    if constexpr (kHas.inertia) force = work.force.lanes(n);
+    if constexpr (kHas.pads) {
       if (work.has_tied[n / size_t(kLanes)]) {
         work.force.set_lanes(n, force);
         work.moment.set_lanes(n, moment);
@@ -50,35 +59,41 @@ void kick(const Model& model, State& state, Workspace& work) {
     }
     const Vec3<Lanes> v = state.v.lanes(n), w = state.w.lanes(n), d = state.d.lanes(n);
     const Lanes mobility = load(&model.inverse_mass()[n]), turning = load(&model.inverse_inertia()[n]);
-    const Vec3<Lanes> v_new = keep * v + (gain * mobility) * force;
     moment = moment - dot(moment, d) * d;  // a director cannot be stretched
-    const Vec3<Lanes> w_new = keep * w + (gain * turning) * moment;
+    const auto kicked = [&](const Vec3<Lanes>& before, const Lanes& by_force, const Vec3<Lanes>& sum) {
+      if constexpr (kHas.damping) return keep * before + (gain * by_force) * sum;
+      return before + (gain * by_force) * sum;
+    };
+    const Vec3<Lanes> v_new = kicked(v, mobility, force), w_new = kicked(w, turning, moment);
     state.v.set_lanes(n, v_new);
     state.w.set_lanes(n, w_new);
     Lanes free = half, free_turning = half;
     stdx::where(mobility == zero, free) = zero;
     stdx::where(turning == zero, free_turning) = zero;
     const Vec3<Lanes> mean_v = free * (v + v_new), mean_w = free_turning * (w + w_new);
-    if constexpr (kInertia) added_power += dot(force - of_terms, mean_v);
-    power[0] += dot(internal, mean_v) + dot(internal_moment, mean_w);
-    for (size_t a = 0; a < count; ++a) power[active[a]] += dot(forces[a], mean_v);
-    for (const size_t k : work.turning) power[k] += dot(work.entries[k].moment.lanes(n), mean_w);
-    if constexpr (kDamping)
+    if constexpr (kHas.inertia) added_power += dot(force - of_terms, mean_v);
+    internal_power += dot(internal, mean_v) + dot(internal_moment, mean_w);
+    if constexpr (kHas.others) {
+      for (size_t a = 0; a < count; ++a) power[active[a]] += dot(forces[a], mean_v);
+      for (const size_t k : work.turning) power[k] += dot(work.entries[k].moment.lanes(n), mean_w);
+    }
+    if constexpr (kHas.damping)
       damping +=
           load(&model.mass()[n]) * dot(mean_v, mean_v) + load(&model.inertia()[n]) * dot(mean_w, mean_w);
   }
-  for (size_t k = 0; k < work.entries.size(); ++k) work.power[k] = stdx::reduce(power[k]);
+  work.power[0] = stdx::reduce(internal_power);
+  for (size_t k = 1; k < work.entries.size(); ++k) work.power[k] = stdx::reduce(power[k]);
   work.added_power = stdx::reduce(added_power);
   work.damping = alpha * stdx::reduce(damping);
 }
 
 using Kick = void (*)(const Model&, State&, Workspace&);
-/// By damping, mass on fibres, pads.
-constexpr std::array<std::array<std::array<Kick, 2>, 2>, 2> kKicks{
-    {{{{kick<false, false, false>, kick<false, false, true>},
-       {kick<false, true, false>, kick<false, true, true>}}},
-     {{{kick<true, false, false>, kick<true, false, true>},
-       {kick<true, true, false>, kick<true, true, true>}}}}};
+
+/// Kicks of all policies; the bits of a place say what the scene has.
+template <size_t... kPlace>
+constexpr std::array<Kick, sizeof...(kPlace)> all_kicks(std::index_sequence<kPlace...> /*places*/) {
+  return {kick<KickPolicy{(kPlace & 1) != 0, (kPlace & 2) != 0, (kPlace & 4) != 0, (kPlace & 8) != 0}>...};
+}
 
 }  // namespace
 
@@ -129,7 +144,10 @@ void add_inertia(const Model& model, const State& state, Workspace& work) {
 }
 
 void kick_nodes(const Model& model, State& state, Workspace& work) {
-  kKicks[model.alpha() != 0][model.fibre_inertia().has_value()][model.rig().has_value()](model, state, work);
+  static constexpr auto kKicks = all_kicks(std::make_index_sequence<16>());
+  const bool others = work.entries.size() > 1;
+  kKicks[size_t(model.alpha() != 0) + 2 * size_t(model.fibre_inertia().has_value()) +
+         4 * size_t(model.rig().has_value()) + 8 * size_t(others)](model, state, work);
 }
 
 void kick_pads(const Model& model, State& state, const RigDrive& drive, Workspace& work) {

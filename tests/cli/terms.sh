@@ -6,14 +6,6 @@ set -uo pipefail
 strip=$source/cases/elastica.json
 ladder=$source/tests/bench/ladder.json
 
-lacks() {  # lacks FILE POINTER...
-  local file=$1 pointer
-  shift
-  for pointer in "$@"; do
-    checks=$((checks + 1))
-    "$json_value" "$file" "$pointer" >"$work/value" 2>&1 && fail "$file has $pointer: $(cat "$work/value")"
-  done
-}
 has() {  # has FILE POINTER...
   local file=$1 pointer
   shift
