@@ -189,9 +189,13 @@ std::string heading(const json& machine) {
 std::string scene_line(const json& scene) {
   const double rate = number(scene, "element_updates_per_second");
   char line[300];
+  if (!scene.contains("share_of_peak")) {  // counted steps: the figure that means something is the state
+    return scene["name"].get<std::string>() + ": " + std::to_string(scene["steps"].get<std::int64_t>()) +
+           " steps, state hash " + scene["state_hash"].get<std::string>() + "\n";
+  }
   std::snprintf(line, sizeof line, "%-26s %9d %9.2f %12.3f %7.1f%% %8.1f%% %9.1f\n",
                 scene["name"].get<std::string>().c_str(), scene["elements"].get<int>(), 1e-6 * rate,
-                number(scene, "updates_per_second_per_gflops"), 1e2 * number(scene, "spread"),
+                1e-6 * number(scene, "updates_per_second_per_gflops"), 1e2 * number(scene, "spread"),
                 1e2 * number(scene, "share_of_peak"), 1e-9 * rate * number(scene, "bytes_per_update"));
   std::string text = line;
   if (scene.contains("two_side_by_side")) {
@@ -260,7 +264,7 @@ int bench(const BenchOptions& options) {
   if (!value) return kInputWrong;
   const Schedule schedule = uniform_schedule(*value);
   json result = {{"machine", machine_json(options)}, {"scenes", json::array()}};
-  std::string text = heading(result["machine"]);
+  std::string text = options.steps > 0 ? "" : heading(result["machine"]);
   bool same = true;
   for (const BenchScene& scene : *scenes) {
     if (!options.common.quiet) std::cerr << scene.name << " ...\n";
