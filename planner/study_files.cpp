@@ -55,9 +55,12 @@ struct Column {
 
 std::vector<Column> columns_of(const Study& study) {
   if (study.drapes) {
-    return {{"separation", "gap [mm]", 1e3},         {"boundary_offset", "offset [mm]", 1e3},
-            {"relative", "larger of both [%]", 1e2}, {"places", "nodes r.m.s. [mm]", 1e3},
-            {"shear_deg", "shear r.m.s. [deg]", 1},  {"objective", "objective", 1}};
+    return {{"separation", "gap [mm]", 1e3},
+            {"boundary_offset", "offset [mm]", 1e3},
+            {"relative", "larger of gap and offset [%]", 1e2},
+            {"places", "nodes r.m.s. [mm]", 1e3},
+            {"shear_deg", "shear r.m.s. [deg]", 1},
+            {"objective", "objective", 1}};
   }
   return {{"relative", "largest relative [%]", 1e2},
           {"places", "nodes r.m.s. [mm]", 1e3},
@@ -218,27 +221,46 @@ std::string fidelities_text(const Study& study) {
   return text;
 }
 
-Chart work_precision(const Study& study, const Column& column) {
-  Chart chart{
-      "Error against run time, " + study.case_name, "wall time of one run [s]", "error: " + column.head, {}};
+/// The series of a chart by name; made if there is none.
+ChartSeries& series_of(Chart& chart, const std::string& name) {
+  for (ChartSeries& series : chart.series) {
+    if (series.name == name) return series;
+  }
+  const bool dots = name == "combination" || name.starts_with("fidelity");
+  return chart.series.emplace_back(ChartSeries{.name = name, .points = {}, .dots = dots, .marks = true});
+}
+
+Chart work_chart(const Study& study, const std::string& title, const std::string& error) {
+  constexpr double kWidth = 820, kHeight = 460;
+  Chart chart{title + ", " + study.case_name, "wall time of one run [s]", "error: " + error, {}};
   chart.log_x = chart.log_y = chart.side_legend = true;
-  chart.width = 820;
-  chart.height = 460;
+  chart.width = kWidth;
+  chart.height = kHeight;
+  return chart;
+}
+
+Chart work_precision(const Study& study, const Column& column) {
+  Chart chart = work_chart(study, "Error against run time", column.head);
+  const auto place = [&](const StudyPoint& point) {
+    return Eigen::Vector2d(point.wall_seconds(), column.factor * error_of(point, column.name));
+  };
   for (const StudyPoint& point : study.points) {
-    if (!point.valid()) continue;
-    auto same = std::find_if(chart.series.begin(), chart.series.end(),
-                             [&](const ChartSeries& series) { return series.name == point.curve; });
-    const bool dots = point.curve == "combination" || point.curve.starts_with("fidelity");
-    if (same == chart.series.end())
-      same = chart.series.insert(same, {.name = point.curve, .points = {}, .dots = dots, .marks = true});
-    same->points.emplace_back(point.wall_seconds(), column.factor * error_of(point, column.name));
+    if (point.valid()) series_of(chart, point.curve).points.push_back(place(point));
   }
   ChartSeries front{.name = "Pareto front", .points = {}, .dots = true, .rings = true};
-  for (const int k : front_of(study, column.name)) {
-    const StudyPoint& point = study.points[size_t(k)];
-    front.points.emplace_back(point.wall_seconds(), column.factor * error_of(point, column.name));
-  }
+  for (const int k : front_of(study, column.name)) front.points.push_back(place(study.points[size_t(k)]));
   chart.series.push_back(front);
+  return chart;
+}
+
+/// What each knob alone does: its error against its own most careful value.
+Chart knob_chart(const Study& study) {
+  Chart chart = work_chart(study, "What each knob costs and saves", "against its most careful value [%]");
+  for (const StudyPoint& point : study.points) {
+    const auto error = point.knob_error.find("relative");
+    if (point.settings.size() != 1 || error == point.knob_error.end() || !(error->second > 0)) continue;
+    series_of(chart, point.curve).points.emplace_back(point.wall_seconds(), 1e2 * error->second);
+  }
   return chart;
 }
 
@@ -328,7 +350,11 @@ std::string ranks_csv(const Study& study) {
 }  // namespace
 
 json study_json(const Study& study) {
-  json out{{"case", study.case_name}, {"points", json::array()}, {"fidelities", json::object()}};
+  json out{{"case", study.case_name},
+           {"points", json::array()},
+           {"fidelities", json::object()},
+           {"rank_correlation", json::array()},
+           {"noise", json::array()}};
   out["reference"] = {{"settings", settings_json(study.reference)}, {"runs", json::array()}};
   for (const auto& [curve, error] : study.base_error) out["reference"]["left"][curve] = finite(error);
   for (const StudyRun& run : study.reference_runs) {
@@ -408,6 +434,7 @@ void write_study(const std::filesystem::path& folder, const Study& study) {
                    line_chart(work_precision(study, column)));
     }
   }
+  if (!study.points.empty()) write_text(folder / "knobs.svg", line_chart(knob_chart(study)));
   if (!study.ranks.empty()) {
     write_text(folder / "ranks.csv", ranks_csv(study));
     write_text(folder / "ranks.svg", line_chart(rank_chart(study)));
