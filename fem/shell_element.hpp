@@ -106,7 +106,7 @@ struct TransverseShear {
 /// Products of an element's derivatives: all that strains, at any height and place across, depend on.
 template <class V>
 struct MotionProducts {
-  V a11, a22, a12;       ///< a_i.a_j
+  V a11, a22, a12;       ///< a_i.a_j; in single lanes a11 and a22 less 1: see shell_single.hpp
   V b11, b12, b21, b22;  ///< a_i.c_j
   V c11, c22, c12;       ///< c_i.c_j
   V a1h, a2h, hh;        ///< with hx

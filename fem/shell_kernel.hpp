@@ -22,14 +22,15 @@
 
 namespace drapeplan {
 
-/// Forces that the element exerts on its corners: on positions [N] and on directors [N m].
+/// What pulls at an element, per rest area: on its derivatives a_k (n) and c_k (m); on hx, hd and the mean
+/// director.
 /// @param law  stresses at section points, like StaticLaw.
-template <int N, int A, bool kRectangle, class V, class Law>
-void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, Law& law,
-                  FibreViscosity<V, A>& viscosity, const Corners<V>& x, const Corners<V>& d,
-                  Corners<V>& force, Corners<V>& moment) {
-  const ElementMotion<V> m = element_motion<kRectangle>(g, x, d);
-  const MotionProducts<V> products = motion_products(m);
+/// @param give  gets these seven. They are passed one by one: copies of what holds them all would not stay in
+///     registers.
+template <int N, int A, bool kRectangle, class V, class Law, class Give>
+void element_pull(const ElementGeometry<V>& g, const KernelMaterial& material, Law& law,
+                  FibreViscosity<V, A>& viscosity, const ElementMotion<V>& m,
+                  const MotionProducts<V>& products, const Give& give) {
   Section<N, A, V> section(g, material, products);
   section.look_up(law, viscosity);
   const SectionForces<V> f = section.forces();
@@ -55,7 +56,14 @@ void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, L
   const Vec3<V> on_hx = (g.area * f.uneven1) * m.a1 + (g.area * f.uneven2) * m.a2 +
                         (g.area * f.across + h.membrane) * m.hx + on_warp * m.mean;
   const Vec3<V> on_hd = h.director * m.hd;
+  give(n1, n2, m1, m2, on_hx, on_hd, on_mean);
+}
 
+/// Forces of these on the corners: on positions [N] and on directors [N m].
+template <bool kRectangle, class V>
+void corner_forces(const ElementGeometry<V>& g, const Vec3<V>& n1, const Vec3<V>& n2, const Vec3<V>& m1,
+                   const Vec3<V>& m2, const Vec3<V>& on_hx, const Vec3<V>& on_hd, const Vec3<V>& on_mean,
+                   Corners<V>& force, Corners<V>& moment) {
   // A force is minus the energy's derivative. In a rectangle b = (-b11, b11, b11, -b11) and
   // (b21, b21, -b21, -b21).
   if constexpr (kRectangle) {
@@ -74,6 +82,17 @@ void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, L
     corners(m1, m2, on_hd, moment);
     for (Vec3<V>& at : moment) at = at - on_mean;
   }
+}
+
+/// Forces that the element exerts on its corners.
+template <int N, int A, bool kRectangle, class V, class Law>
+void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, Law& law,
+                  FibreViscosity<V, A>& viscosity, const Corners<V>& x, const Corners<V>& d,
+                  Corners<V>& force, Corners<V>& moment) {
+  const ElementMotion<V> m = element_motion<kRectangle>(g, x, d);
+  const MotionProducts<V> products = motion_products(m);
+  const auto give = [&](const auto&... pull) { corner_forces<kRectangle>(g, pull..., force, moment); };
+  element_pull<N, A, kRectangle>(g, material, law, viscosity, m, products, give);
 }
 
 /// Stored energy of one element [J].

@@ -36,6 +36,7 @@ struct BenchScene {
   int section_points = 3;
   bool rates = false;
   double selective_scaling = 1;
+  Precision precision = Precision::double_lanes;
 };
 
 std::vector<BenchScene> bench_scenes() {
@@ -48,7 +49,8 @@ std::vector<BenchScene> bench_scenes() {
           {"drape-5mm-5-points", Kind::drape, 0.005, 5},
           {"drape-5mm-rates", Kind::drape, 0.005, 3, true},
           {"drape-5mm-5-points-rates", Kind::drape, 0.005, 5, true},
-          {"drape-5mm-selective", Kind::drape, 0.005, 3, false, 4}};
+          {"drape-5mm-selective", Kind::drape, 0.005, 3, false, 4},
+          {"drape-5mm-single", Kind::drape, 0.005, 3, false, 1, Precision::single_lanes}};
 }
 
 double highest(const Mold& mold) {
@@ -71,6 +73,7 @@ Model model_of(const Case& value, const BenchScene& bench) {
   options.section_points = bench.section_points;
   options.rates = bench.rates;
   options.selective_scaling = bench.selective_scaling;
+  options.precision = bench.precision;
   Scene scene = scene_of(value, options);
   if (bench.kind != Kind::drape) {
     scene.rig.reset();
@@ -114,11 +117,13 @@ json machine_json() {
 
 json scene_json(const BenchScene& bench, const Model& model, const Throughput& measured, double peak) {
   const int flops = kernel_flops(bench.section_points, model.scene().options.fibre_points);
+  const bool single = bench.precision == Precision::single_lanes;
+  const double lanes = single ? 2 : 1;  // floats over doubles per operation
   return {{"name", bench.name},
           {"mesh_size", bench.mesh_size},
           {"section_points", bench.section_points},
           {"rates", bench.rates},
-          {"precision", "double"},
+          {"precision", single ? "single" : "double"},
           {"elements", model.scene().mesh.element_count()},
           {"nodes", model.node_count()},
           {"steps", measured.steps},
@@ -127,7 +132,7 @@ json scene_json(const BenchScene& bench, const Model& model, const Throughput& m
           {"spread", measured.spread},
           {"kernel_flops_per_update", flops},
           {"bytes_per_update", step_bytes(model)},
-          {"share_of_peak", flops * measured.updates_per_second / peak},
+          {"share_of_peak", flops * measured.updates_per_second / (lanes * peak)},
           {"state_hash", hex(measured.state_hash)},
           {"same_hash_in_all_repeats", measured.same_hash}};
 }
@@ -191,10 +196,11 @@ std::string csv(const json& result) {
       "spread,state_hash\n";
   for (const json& s : result["scenes"]) {
     char line[400];
-    std::snprintf(line, sizeof line, "%s,%s,%g,%d,%d,double,%d,%.2f,%.4f,%.3f,%s\n",
+    std::snprintf(line, sizeof line, "%s,%s,%g,%d,%d,%s,%d,%.2f,%.4f,%.3f,%s\n",
                   result["machine"]["processor"].get<std::string>().c_str(),
                   s["name"].get<std::string>().c_str(), s["mesh_size"].get<double>(),
-                  s["section_points"].get<int>(), int(s["rates"].get<bool>()), s["elements"].get<int>(),
+                  s["section_points"].get<int>(), int(s["rates"].get<bool>()),
+                  s["precision"].get<std::string>().c_str(), s["elements"].get<int>(),
                   1e-6 * s["element_updates_per_second"].get<double>(),
                   1e-6 * s["updates_per_second_per_gflops"].get<double>(), s["spread"].get<double>(),
                   s["state_hash"].get<std::string>().c_str());
