@@ -38,23 +38,42 @@ struct SingleLanes {
 inline constexpr int kSingleLanes = int(SingleLanes::Simd::size());
 static_assert(kSingleLanes == 2 * kLanes, "two blocks of doubles make one of floats");
 
-/// Two blocks of doubles, rounded.
-DRAPEPLAN_INLINE inline SingleLanes joined(const Lanes& low, const Lanes& high) {
+/// One block of doubles, rounded: half of SingleLanes. To be made as soon as its doubles are known: they take
+/// twice the registers.
+struct HalfLanes {
 #if defined(__AVX512F__)
-  const __m256 a = _mm512_cvtpd_ps(static_cast<__m512d>(low)),
-               b = _mm512_cvtpd_ps(static_cast<__m512d>(high));
-  const __m512d both =
-      _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_castps_pd(a)), _mm256_castps_pd(b), 1);
-  return SingleLanes(SingleLanes::Simd(_mm512_castpd_ps(both)));
+  DRAPEPLAN_INLINE explicit HalfLanes(const Lanes& all) : value(_mm512_cvtpd_ps(static_cast<__m512d>(all))) {}
+  __m256 value;
 #elif defined(__AVX__)
-  const __m128 a = _mm256_cvtpd_ps(static_cast<__m256d>(low)),
-               b = _mm256_cvtpd_ps(static_cast<__m256d>(high));
-  return SingleLanes(SingleLanes::Simd(_mm256_insertf128_ps(_mm256_castps128_ps256(a), b, 1)));
+  DRAPEPLAN_INLINE explicit HalfLanes(const Lanes& all) : value(_mm256_cvtpd_ps(static_cast<__m256d>(all))) {}
+  __m128 value;
+#else
+  explicit HalfLanes(const Lanes& all) {
+    for (size_t l = 0; l < value.size(); ++l) value[l] = float(all[l]);
+  }
+  std::array<float, size_t(kLanes)> value;
+#endif
+  HalfLanes() = default;
+};
+
+DRAPEPLAN_INLINE inline SingleLanes joined(const HalfLanes& low, const HalfLanes& high) {
+#if defined(__AVX512F__)
+  const __m512d first = _mm512_castpd256_pd512(_mm256_castps_pd(low.value));
+  return SingleLanes(
+      SingleLanes::Simd(_mm512_castpd_ps(_mm512_insertf64x4(first, _mm256_castps_pd(high.value), 1))));
+#elif defined(__AVX__)
+  return SingleLanes(
+      SingleLanes::Simd(_mm256_insertf128_ps(_mm256_castps128_ps256(low.value), high.value, 1)));
 #else
   return SingleLanes(SingleLanes::Simd([&](auto l) {
-    return float(l < size_t(kLanes) ? low[size_t(l) % size_t(kLanes)] : high[size_t(l) % size_t(kLanes)]);
+    const size_t at = size_t(l) % size_t(kLanes);
+    return size_t(l) < size_t(kLanes) ? low.value[at] : high.value[at];
   }));
 #endif
+}
+/// Two blocks of doubles, rounded.
+DRAPEPLAN_INLINE inline SingleLanes joined(const Lanes& low, const Lanes& high) {
+  return joined(HalfLanes(low), HalfLanes(high));
 }
 
 /// One of these blocks: 0 or 1.

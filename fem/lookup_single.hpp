@@ -40,8 +40,10 @@ DRAPEPLAN_INLINE inline SingleLanes octaves(const SingleLanes& x) {
       _mm512_sub_epi32(_mm512_castps_si512(static_cast<__m512>(x.value)), _mm512_set1_epi32(kBitsOfOne));
   const SingleLanes bits(SingleLanes::Simd(_mm512_cvtepi32_ps(above)));
 #else
-  const SingleLanes bits(SingleLanes::Simd(
-      [&](auto l) { return float(std::bit_cast<int>(float(x.value[size_t(l)])) - kBitsOfOne); }));
+  const auto above = [&x](auto l) {
+    return float(std::bit_cast<int>(float(x.value[size_t(l)])) - kBitsOfOne);
+  };
+  const SingleLanes bits{SingleLanes::Simd(above)};
 #endif
   return bits * SingleLanes(1 / kPerOctave);
 }

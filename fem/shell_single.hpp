@@ -13,11 +13,41 @@
 
 namespace drapeplan {
 
-DRAPEPLAN_INLINE inline void join(const Vec3<Lanes>& low, const Vec3<Lanes>& high, Vec3<SingleLanes>& out) {
+DRAPEPLAN_INLINE inline void round_to(const Vec3<Lanes>& from, Vec3<HalfLanes>& to) {
+  to.x = HalfLanes(from.x);
+  to.y = HalfLanes(from.y);
+  to.z = HalfLanes(from.z);
+}
+DRAPEPLAN_INLINE inline void join(const Vec3<HalfLanes>& low, const Vec3<HalfLanes>& high,
+                                  Vec3<SingleLanes>& out) {
   out.x = joined(low.x, high.x);
   out.y = joined(low.y, high.y);
   out.z = joined(low.z, high.z);
 }
+
+/// What single lanes need of a block's corners.
+struct RoundedBlock {
+  template <bool kRectangle>
+  DRAPEPLAN_INLINE void look(const ElementGeometry<Lanes>& g, const Corners<Lanes>& x,
+                             const Corners<Lanes>& d) {
+    Vec3<Lanes> b1, b2, h;
+    position_motion<kRectangle>(g, x, b1, b2, h);
+    round_to(b1, a1);
+    round_to(b2, a2);
+    round_to(h, hx);
+    excess1 = HalfLanes(dot(b1, b1) - Lanes(1.0));
+    excess2 = HalfLanes(dot(b2, b2) - Lanes(1.0));
+    a12 = HalfLanes(dot(b1, b2));
+    const DirectorPairs<Lanes> pairs(d);
+    round_to(pairs.p, p);
+    round_to(pairs.q, q);
+    round_to(pairs.even, even);
+    round_to(pairs.odd, odd);
+  }
+  Vec3<HalfLanes> a1, a2, hx, p, q, even, odd;
+  HalfLanes excess1, excess2, a12;  ///< a_1.a_1 - 1, a_2.a_2 - 1, a_1.a_2
+};
+
 template <size_t kHalf>
 DRAPEPLAN_INLINE inline Vec3<Lanes> half(const Vec3<SingleLanes>& both) {
   return {half<kHalf>(both.x), half<kHalf>(both.y), half<kHalf>(both.z)};
@@ -99,32 +129,35 @@ class SingleShellTerm final : public ShellTerm<N, A, kRates> {
                    const Rows<double>& moment) const {
     const ElementGeometry<Lanes>&g0 = this->geometries_[block[0]->geometry],
           &g1 = this->geometries_[block[1]->geometry];
+    RoundedBlock low, high;
+    low.look<kRectangle>(g0, x.corners(*block[0]), d.corners(*block[0]));
+    high.look<kRectangle>(g1, x.corners(*block[1]), d.corners(*block[1]));
     ElementMotion<SingleLanes> motion;
-    MotionProducts<SingleLanes> products;
-    {
-      const ElementMotion<Lanes> low =
-          element_motion<kRectangle>(g0, x.corners(*block[0]), d.corners(*block[0]));
-      const ElementMotion<Lanes> high =
-          element_motion<kRectangle>(g1, x.corners(*block[1]), d.corners(*block[1]));
-      join(low.a1, high.a1, motion.a1);
-      join(low.a2, high.a2, motion.a2);
-      join(low.c1, high.c1, motion.c1);
-      join(low.c2, high.c2, motion.c2);
-      join(low.mean, high.mean, motion.mean);
-      join(low.hx, high.hx, motion.hx);
-      join(low.hd, high.hd, motion.hd);
-      products = motion_products(motion);
-      const Lanes one(1.0);
-      products.a11 = joined(dot(low.a1, low.a1) - one, dot(high.a1, high.a1) - one);
-      products.a22 = joined(dot(low.a2, low.a2) - one, dot(high.a2, high.a2) - one);
-      products.a12 = joined(dot(low.a1, low.a2), dot(high.a1, high.a2));
-    }
-    const auto give = [&](const auto&... pull) {
+    join(low.a1, high.a1, motion.a1);
+    join(low.a2, high.a2, motion.a2);
+    join(low.hx, high.hx, motion.hx);
+    DirectorPairs<SingleLanes> pairs;
+    join(low.p, high.p, pairs.p);
+    join(low.q, high.q, pairs.q);
+    join(low.even, high.even, pairs.even);
+    join(low.odd, high.odd, pairs.odd);
+    director_motion<kRectangle>(g, pairs, motion.c1, motion.c2, motion.mean, motion.hd);
+    MotionProducts<SingleLanes> products = motion_products(motion);
+    products.a11 = joined(low.excess1, high.excess1);
+    products.a22 = joined(low.excess2, high.excess2);
+    products.a12 = joined(low.a12, high.a12);
+    using Single3 = Vec3<SingleLanes>;
+    const auto give = [&](const Single3& n1, const Single3& n2, const Single3& on_hx, const Single3& m1,
+                          const Single3& m2, const Single3& on_hd, const Single3& on_mean) {
+      Corners<SingleLanes> turning;
+      corner_moments<kRectangle>(g, m1, m2, on_hd, on_mean, turning);
       Corners<Lanes> f, m;
-      corner_forces<kRectangle>(g0, half<0>(pull)..., f, m);
+      corner_forces<kRectangle>(g0, half<0>(n1), half<0>(n2), half<0>(on_hx), f);
+      for (size_t c = 0; c < 4; ++c) m[c] = half<0>(turning[c]);
       this->add_forces(*block[0], f, m, force, moment);
       if (block[1] == block[0]) return;
-      corner_forces<kRectangle>(g1, half<1>(pull)..., f, m);
+      corner_forces<kRectangle>(g1, half<1>(n1), half<1>(n2), half<1>(on_hx), f);
+      for (size_t c = 0; c < 4; ++c) m[c] = half<1>(turning[c]);
       this->add_forces(*block[1], f, m, force, moment);
     };
     element_pull<N, A, kRectangle>(g, this->material_, law, viscosity, motion, products, give);
