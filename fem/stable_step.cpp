@@ -123,6 +123,7 @@ double largest_eigenvalue(Tangent tangent) {
 double stable_step(const Model& model, State& state, StepScratch& scratch) {
   const Shell& shell = model.shell();
   NodalStiffness &others = scratch.others, &sum = scratch.sum;
+  if (state.lightness.empty()) state.lightness.assign(padded(model.node_count()), 1.0);
   others.clear();
   for (const auto& term : model.terms()) {
     if (term.get() != &shell) term->add_tangent(state, others);
