@@ -284,6 +284,7 @@ std::uint64_t Model::fingerprint() const {
                  double(o.section_points), double(o.fibre_points), double(o.step_interval), o.hourglass,
                  o.bulk_viscosity, o.contact_stiffness, o.contact_damping, scene_.gravity.value_or(0),
                  scene_.friction.value_or(-1), scene_.position.x(), scene_.position.y(), scene_.angle});
+  if (o.precision == Precision::single_lanes) hash.add(std::string_view("single"));
   if (scene_.mold) add_mold(hash, *scene_.mold);
   if (scene_.rest) add(std::array{scene_.rest->speed, scene_.rest->hold});
   if (scene_.loads) {

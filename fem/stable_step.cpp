@@ -150,6 +150,8 @@ double stable_step(const Model& model, State& state, StepScratch& scratch) {
 double true_stable_step(const Model& model, const State& state) {
   Scene undamped = model.scene();  // viscous stress changes with strain as well, but is no stiffness
   undamped.options.bulk_viscosity = 0;
+  undamped.options.precision =
+      Precision::double_lanes;  // differences of forces, over less than floats tell apart
   const Model elastic(std::move(undamped));
   double rate = 0;  // 2 over the step
   for (int round = 0; round < kDashpotRounds; ++round)
