@@ -58,14 +58,19 @@ std::vector<StudyPoint> sweep_points(const StudySubject& subject) {
   const double mesh = subject.base().fidelities.at(kReport).mesh_size;
   struct Cheap {
     const char *mass, *time, *selective;
+    bool single = false;
   };
   for (const double factor : {1.0, 1.5, 2.0}) {
-    for (const Cheap cheap :
-         {Cheap{"20", "8", "4"}, {"20", "16", "4"}, {"60", "8", "6"}, {"60", "16", "6"}}) {
+    for (const Cheap cheap : {Cheap{"20", "8", "4"},
+                              {"20", "16", "4"},
+                              {"60", "8", "6"},
+                              {"60", "16", "6"},
+                              {"20", "8", "4", true}}) {
       Settings settings{{"fem.mesh_size", rounded_length(factor * mesh)},
                         {"fem.mass_scaling", cheap.mass},
                         {"fem.selective_scaling", cheap.selective}};
       if (subject.drapes()) settings["fem.time_scaling"] = cheap.time;
+      if (cheap.single) settings["fem.precision"] = "single";
       points.push_back({"combination", settings, {}, {}, {}});
     }
   }
