@@ -1,5 +1,7 @@
 // study: error against run time.
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -93,11 +95,14 @@ void sweep(StudyWork& work, Study& study) {
   }
 }
 
-/// Every fidelity of the case and every combination of the sweep, named ones first.
+/// Every fidelity of the case and every combination of the sweep, named ones first; without those that turn
+/// the material's rates on or off against the reporting fidelity: other physics, not another accuracy.
 std::vector<RankRow> rank_rows(const StudySubject& subject) {
   std::vector<RankRow> named{{"fem", {}, 0, 0, 0, {}, 0}}, others;
+  const bool rates = subject.changes_of(kReport).count("fem.rates") > 0;
   for (const StudyPoint& point : sweep_points(subject)) {
     const std::string fidelity = "fidelity ";
+    if ((point.settings.count("fem.rates") > 0) != rates) continue;
     if (point.curve.starts_with(fidelity)) {
       named.push_back({point.curve.substr(fidelity.size()), point.settings, 0, 0, 0, {}, 0});
     } else if (point.curve == "combination") {
@@ -140,8 +145,10 @@ void measure_noise(StudyWork& work, Study& study) {
   std::vector<Settings> settings{{}};
   std::vector<std::string> names{"fem"};
   for (const std::string& name : work.subject.fidelities()) {
+    const Settings changes = work.subject.changes_of(name);
+    if (changes.count("fem.rates") > 0) continue;  // other physics
     names.push_back(name);
-    settings.push_back(work.subject.changes_of(name));
+    settings.push_back(changes);
   }
   const std::vector<std::vector<StudyRun>> runs = run_all(work, "noise", settings, line);
   for (size_t k = 0; k < runs.size(); ++k) {
