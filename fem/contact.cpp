@@ -8,9 +8,7 @@ namespace {
 
 namespace stdx = std::experimental;
 
-/// Square of the steepest slope that can be touched (84 degrees): at a vertical wall a height field has no
-/// distance.
-constexpr double kSteepest2 = 100;
+constexpr double kSteepest2 = kSteepestContact * kSteepestContact;
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 
 /// Nodes within this share of the half thickness above the surface get the second evaluation. The tangent

@@ -10,6 +10,9 @@
 
 namespace drapeplan {
 
+/// Steepest slope that can be touched (84 degrees): at a vertical wall a height field has no distance.
+inline constexpr double kSteepestContact = 10;
+
 /// Of each node, the same along the mold's normal and in its tangent plane.
 struct ContactSprings {
   std::vector<double> stiffness;  ///< [N/m]

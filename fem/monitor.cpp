@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <sstream>
 
 namespace drapeplan {
@@ -13,7 +14,26 @@ constexpr double kTornStrain = 0.2;
 /// Of the largest book. Booked and stored work differ by the square of the step; measured below 1e-4.
 constexpr double kGivenShare = 0.01;
 
+/// How far a place is off the part of the x-y plane that the mold covers, in x or y [m].
+double beyond(const Extent& extent, double x, double y) {
+  return std::max(
+      {extent.lower.x() - x, x - extent.upper.x(), extent.lower.y() - y, y - extent.upper.y(), 0.0});
+}
+
+std::string millimetres(double length) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g mm", 1e3 * length);
+  return text;
+}
+
 }  // namespace
+
+Monitor::Monitor(const Model& model) : model_(model) {
+  if (!model.scene().mold) return;
+  const State flat = model.flat_state(0);
+  for (size_t n = 0; n < size_t(model.node_count()); ++n)
+    overhang_ = std::max(overhang_, beyond(model.scene().mold->extent(), flat.x.x[n], flat.x.y[n]));
+}
 
 Energies energies(const Model& model, const State& state) {
   const auto work = [&state](Book book) { return state.work[size_t(book)]; };
@@ -41,7 +61,10 @@ bool Monitor::look(State& state, RunReport& report) {
   // Springs and viscosity start empty: what the ply gave it must have taken. A step that is too long pumps
   // energy out of it, and the books of that still close.
   if (now.internal < -kGivenShare * record.energy)
-    return fail(state, "the ply gives energy that it never took: the step is unstable", report);
+    return fail(
+        state,
+        "the ply gives energy that it never took: the step is unstable; lower step_safety or step_interval",
+        report);
   if (state.work[size_t(Book::added_mass)] > kGivenShare * record.energy)
     return fail(state, "mass added to fibres gives energy that it never took: lower selective_scaling",
                 report);
@@ -62,13 +85,25 @@ bool Monitor::look(State& state, RunReport& report) {
   }
   if (!(std::max(record.fibre_strain, record.fibre_compression) <= kTornStrain))
     return fail(state, "a fibre is torn or the step is unstable", report);
-  if (model_.scene().mold) note_penetration(state);
+  if (!model_.scene().mold) return true;
+  note_penetration(state);
+  const double thickness = model_.scene().fabric.thickness;
+  // A gap is never negative: a ply inside the mold would look perfectly draped.
+  if (record.penetration > thickness)
+    return fail(
+        state,
+        "the ply came " + millimetres(record.penetration) + " inside the mold: more than its thickness",
+        report);
+  if (slid_ > overhang_ + thickness)
+    return fail(state, "the ply slid " + millimetres(slid_) + " over the mold's edge, where its extent ends",
+                report);
   return true;
 }
 
 // The distance to the tangent plane at the vertical foot (5e-8 m on the seed's mold) tells who is worth
 // asking.
-void Monitor::note_penetration(State& state) const {
+void Monitor::note_penetration(State& state) {
+  slid_ = 0;
   const Mold& mold = *model_.scene().mold;
   const double surface = 0.5 * model_.scene().fabric.thickness;
   double z[kChunk], zx[kChunk], zy[kChunk];
@@ -78,6 +113,7 @@ void Monitor::note_penetration(State& state) const {
     for (int k = 0; k < chunk; ++k) {
       const auto n = size_t(first + k);
       const double above = (state.x.z[n] - z[k]) / std::sqrt(1 + zx[k] * zx[k] + zy[k] * zy[k]);
+      if (surface - above > 0) slid_ = std::max(slid_, beyond(mold.extent(), state.x.x[n], state.x.y[n]));
       if (!(surface - above > state.record.penetration)) continue;  // not defined here, or no worse
       const double distance = mold.closest({state.x.x[n], state.x.y[n], state.x.z[n]}).signed_distance;
       state.record.penetration = std::max(state.record.penetration, surface - distance);
