@@ -167,6 +167,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
     for (int g = 0; g < scene_.rig->count(); ++g)
       place.emplace_back(scene_.position + turn * scene_.rig->place(g));
     rig_.emplace(*scene_.rig, mesh.rest, mass_, inertia_, place, scene_.angle);
+    pad_nodes_ = rig_->tied_by_pad();
     for (const int node : rig_->tied()) {
       if (mass_[size_t(node)] == 0)
         throw std::invalid_argument("a node under a pad is clamped, pinned or gripped");
@@ -223,7 +224,7 @@ void Model::add_fibre_inertia(double rise) {
     mobility[size_t(node)] = 1 / own_mass_[size_t(node)];
   const double rate = rise * selective_rate_;
   fibre_inertia_.emplace(scene_.mesh, shell_->borne(), shell_->borne_stretch(), rate, std::move(mobility),
-                         rig_ ? rig_->tied_by_pad() : std::vector<std::vector<int>>());
+                         pad_nodes_);
   selective_dt_ = stable_dt(rate);
   shell_->set_borne_step(selective_dt_);
   stable_dt_ = std::min(stable_dt_, selective_dt_);
@@ -263,15 +264,23 @@ void Model::add_contact(NodalStiffness& stiffness) {
     const double most = kBareShare * selective_rate_ * selective_rate_;
     for (size_t k = 0; k < n; ++k) springs.stiffness[k] = std::min(springs.stiffness[k], most * own_mass_[k]);
   }
+  const auto dashpots = [&options](ContactSprings& of, const std::vector<double>& mass) {
+    for (size_t k = 0; k < mass.size(); ++k)
+      of.damping[k] = 2 * options.contact_damping * std::sqrt(of.stiffness[k] * mass[k]);
+  };
+  ReleasedSprings released;
+  if (rig_) {
+    released = {pad_nodes_, springs};
+    dashpots(released.springs, own_mass_);
+  }
   for (const int node : rig_ ? rig_->tied() : std::vector<int>()) {
     const auto k = size_t(node);
     const double surplus = bearing_mass_[k] - own_mass_[k];
     springs.stiffness[k] = std::max(springs.stiffness[k], kPadShare * surplus * highest * highest);
   }
-  for (size_t k = 0; k < n; ++k)
-    springs.damping[k] = 2 * options.contact_damping * std::sqrt(springs.stiffness[k] * bearing_mass_[k]);
+  dashpots(springs, bearing_mass_);
   terms_.push_back(make_contact(*scene_.mold, scene_.friction, std::move(springs),
-                                0.5 * scene_.fabric.thickness, options.step_interval));
+                                0.5 * scene_.fabric.thickness, options.step_interval, std::move(released)));
   terms_.back()->add_stiffness(stiffness);
 }
 
@@ -316,6 +325,17 @@ void Model::lighten(const NodalStiffness& stiffness, double highest_rate,
   const Lanes unit(1 / stdx::hmax(largest));  // only ratios count: the lightest has 1
   for (size_t n = 0; n < size_t(node_count()); n += size_t(kLanes))
     store(stdx::clamp(load(&lightness[n]) * unit, Lanes(kLeast), Lanes(1.0)), &lightness[n]);
+}
+
+void Model::bear_released(const State& state, NodalStiffness& stiffness) const {
+  for (size_t g = 0; g < pad_nodes_.size(); ++g) {
+    if (!state.pads[g].released) continue;
+    for (const int node : pad_nodes_[g]) {
+      const auto k = size_t(node);
+      const double share = bearing_mass_[k] / own_mass_[k];
+      stiffness.translation[k] *= share, stiffness.rotation[k] *= share, stiffness.damping[k] *= share;
+    }
+  }
 }
 
 double Model::free_mass() const {

@@ -11,6 +11,9 @@ namespace {
 /// Far beyond what any carbon fibre bears (2 %): what comes here is numerics, which books alone cannot see.
 constexpr double kTornStrain = 0.2;
 
+/// Its sine is 0.98: up to there the shell tabulates the law of shear, which goes on linearly in the sine.
+const double kTabulatedShear = std::asin(0.98);
+
 /// Of the largest book. Booked and stored work differ by the square of the step; measured below 1e-4.
 constexpr double kGivenShare = 0.01;
 
@@ -65,6 +68,19 @@ bool Monitor::look(State& state, RunReport& report) {
         state,
         "the ply gives energy that it never took: the step is unstable; lower step_safety or step_interval",
         report);
+  // Stored energy is looked at after the drift, books end half a step before: in the first steps of a run
+  // that is much.
+  constexpr std::int64_t kBooksSettled = 200;
+  const ShellEnergy stored = model_.shell().stored_energy(state);
+  if (state.step > kBooksSettled &&
+      stored.fabric + stored.hourglass > now.internal + kGivenShare * record.energy)
+    return fail(
+        state,
+        "the ply holds energy that it never took: the step was unstable; lower step_safety or step_interval",
+        report);
+  if (std::min(now.contact, now.friction) < -kGivenShare * record.energy)
+    return fail(state, "contact gives energy that it never took: the step is unstable; lower step_safety",
+                report);
   if (state.work[size_t(Book::added_mass)] > kGivenShare * record.energy)
     return fail(state, "mass added to fibres gives energy that it never took: lower selective_scaling",
                 report);
@@ -76,6 +92,7 @@ bool Monitor::look(State& state, RunReport& report) {
     }
     return fail(state, "not finite at node " + std::to_string(n), report);
   }
+  double shear = 0;
   model_.shell().strains(state, strains_);
   for (const auto* list : {&strains_.warp_strain, &strains_.weft_strain}) {
     for (const double strain : *list) {
@@ -85,6 +102,9 @@ bool Monitor::look(State& state, RunReport& report) {
   }
   if (!(std::max(record.fibre_strain, record.fibre_compression) <= kTornStrain))
     return fail(state, "a fibre is torn or the step is unstable", report);
+  for (const double angle : strains_.shear) shear = std::max(shear, std::abs(angle));
+  if (!(shear <= kTabulatedShear))
+    return fail(state, "an element is sheared by more than 78.5 deg, where the law of shear ends", report);
   if (!model_.scene().mold) return true;
   note_penetration(state);
   const double thickness = model_.scene().fabric.thickness;

@@ -27,14 +27,17 @@ double start_height(const Model& model, const RunRequest& request) {
   return request.schedule->paths.front().front().z - model.scene().rig->joint_offset;
 }
 
-/// The mold is asked vertically: a flat ply above all heights is outside, whatever the slope.
+/// The mold is asked vertically, with its slope: a ply that starts inside it would be thrown out.
 void refuse_start_in_mold(const Model& model, const State& state) {
+  constexpr double kSlack = 0.02;  // of the thickness: round-off, and what a ply's weight sinks in
+  const double thickness = model.scene().fabric.thickness;
   for (size_t n = 0; n < size_t(model.node_count()); ++n) {
-    const double height = model.scene().mold->height(state.x.x[n], state.x.y[n]);
-    const double thickness = model.scene().fabric.thickness;
-    if (state.x.z[n] < height - thickness) {  // false where the mold is not defined
+    const Jet jet = model.scene().mold->jet(state.x.x[n], state.x.y[n]);
+    const double stretch = std::sqrt(1 + jet.zx * jet.zx + jet.zy * jet.zy);
+    const double inside = 0.5 * thickness - (state.x.z[n] - jet.z) / stretch;
+    if (inside > kSlack * thickness) {  // false where the mold is not defined
       throw std::invalid_argument(
-          "simulate: the flat ply starts " + std::to_string(1e3 * (height - state.x.z[n])) +
+          "simulate: the flat ply's underside starts " + std::to_string(1e3 * inside) +
           " mm below the mold at x = " + std::to_string(state.x.x[n]) +
           " m, y = " + std::to_string(state.x.y[n]) + " m: check its place and the start height");
     }

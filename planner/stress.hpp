@@ -57,10 +57,13 @@ struct StressScene {
   /// Acceptable beside `right`, with a word of the reason that must be given; empty: right or nothing.
   Verdict otherwise = Verdict::right;
   std::string says = {};
-  bool rests = true;           ///< ends at rest: nothing may drift any more
-  bool fast = false;           ///< belongs to the subset that tests run
-  bool bisect = false;         ///< look for the limit of the step by runs
-  double most_strain = 0.05;   ///< of fibres
+  bool rests = true;             ///< ends at rest: nothing may drift any more
+  bool fast = false;             ///< belongs to the subset that tests run
+  bool bisect = false;           ///< look for the limit of the step by runs
+  double most_strain = 0.05;     ///< of fibres
+  double most_shortening = 0.1;  ///< of fibres: folds finer than the mesh
+  /// Energy that damping, friction or contact seem to give, over the largest.
+  double most_given = 1e-3;
   double most_drift = 1e-5;    ///< r.m.s. over the last tenth, where it rests [m]
   double most_balance = 1e-9;  ///< of the largest energy
 };

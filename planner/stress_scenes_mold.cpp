@@ -37,13 +37,14 @@ double block_path(double degrees, double coefficient, double gravity, double tim
 }
 
 StressScene incline_scene(std::string group, std::string name, double degrees, double coefficient,
-                          double gravity = kGravity) {
+                          double gravity = kGravity, double duration = 0.2) {
   const bool slides = block_path(degrees, coefficient, gravity, 1) > 0;
   StressScene scene{std::move(group), std::move(name),
                     [=] {
                       StressSetup setup = incline(tilted(degrees, std::min(coefficient, 100.0)));
                       setup.scene.friction = coefficient;  // the reader takes up to 100
                       setup.scene.gravity = gravity;
+                      setup.duration = duration;
                       return setup;
                     },
                     [=](const StressRun& run) {
@@ -216,8 +217,7 @@ void add_starts(Scenes& scenes) {
 
 void add_gravity(Scenes& scenes) {
   scenes.push_back(incline_scene("gravity", "x 100, incline that sticks", 30, 0.7, 100 * kGravity));
-  StressScene slide = incline_scene("gravity", "x 100, incline that slides", 30, 0.5, 100 * kGravity);
-  scenes.push_back(slide);
+  scenes.push_back(incline_scene("gravity", "x 100, incline that slides", 30, 0.5, 100 * kGravity, 0.1));
   StripSetup strip;
   strip.gravity = 100 * kGravity;
   scenes.push_back(strip_scene("gravity", "x 100, sag", strip, 0.02));

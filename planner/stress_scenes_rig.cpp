@@ -35,6 +35,53 @@ StressScene drape(std::string group, std::string name, std::function<void(Stress
   return scene;
 }
 
+/// A case of 2 x 2 grippers as a user writes it.
+StressSetup small_rig(const std::vector<std::string>& overrides) {
+  return from_case(R"({
+    "format": "drapeplan-case 1",
+    "ply": {"width": "160 mm", "height": "160 mm", "position": ["100 mm", "100 mm"]},
+    "material": {"law": "linear", "thickness": "0.3 mm", "areal_density": "314 g/m^2",
+      "transverse_shear_modulus": "0.2 MPa", "modulus": "1 GPa", "shear_modulus": "0.5 MPa"},
+    "mold": {"shape": "sphere", "extent": [["0 mm", "200 mm"], ["0 mm", "200 mm"]],
+      "centre": ["100 mm", "100 mm", "-500 mm"], "radius": "600 mm"},
+    "friction": {"coefficient": 0.5},
+    "mapping": {},
+    "grippers": {"columns": 2, "rows": 2, "spacing": "110 mm", "joint_offset": "2 mm"},
+    "gravity": "9.81 m/s^2",
+    "damping": {"alpha": "200 1/s"},
+    "schedule": {"settle": "5 s"},
+    "fem": {"mesh_size": "14 mm", "mass_scaling": 4, "time_scaling": 10}
+  })",
+                   overrides);
+}
+
+void add_cases(Scenes& scenes) {
+  scenes.push_back({"gripper speed", "a case", [] { return small_rig({}); }, borne});
+  scenes.back().most_drift = 1e-4;
+  const auto refuse = [&scenes](std::string group, std::string name, std::string setting, std::string place) {
+    scenes.push_back({std::move(group), std::move(name), [setting] { return small_rig({setting}); }, nullptr,
+                      Verdict::refused, std::move(place)});
+  };
+  refuse("gripper speed", "at most 0 m/s in a case", "grippers.max_velocity=\"0 m/s\"",
+         "/grippers/max_velocity");
+  refuse("actuator force", "limit 0 in a case", "grippers.actuator_force_limit=\"0 N\"",
+         "/grippers/actuator_force_limit");
+  refuse("interlinks", "pads that overlap in a case", "grippers.pad_radius=\"60 mm\"", "/grippers/spacing");
+  refuse("interlinks", "grippers off the ply in a case", "grippers.spacing=\"400 mm\"", "/grippers/spacing");
+  refuse("interlinks", "a spacing of 0 in a case", "grippers.spacing=\"0 mm\"", "/grippers/spacing");
+  scenes.push_back(
+      {"gripper speed", "a preshape and strokes of 1 ms in a case: stretched to 0.2 m/s",
+       [] {
+         return small_rig({"schedule.preshape_duration=\"1 ms\"", "schedule.uniform.duration=\"1 ms\""});
+       },
+       [](const StressRun& run) {
+         std::vector<StressCheck> checks = borne(run);
+         checks.push_back(at_most("speed [m/s]", run.setup.schedule->largest_velocity(), 0.2001));
+         return checks;
+       }});
+  scenes.back().most_drift = 1e-4;
+}
+
 void add_speeds(Scenes& scenes) {
   scenes.push_back(drape("gripper speed", "as usual", [](StressSetup&) {}));
   for (const double speed : {10.0, 100.0, 1e4}) {
@@ -52,7 +99,7 @@ void add_speeds(Scenes& scenes) {
     s.schedule->blend_time = 0;
     for (auto& path : s.schedule->paths) {
       const double top = path[0].z;
-      path = {{0, top}, {1, top - 0.1}, {2, top}, {7, top}};
+      path = {{0, top}, {1, top - 0.1}, {2, top}, {17, top}};
     }
     s.scene.mold.reset();
     s.scene.friction.reset();
@@ -61,14 +108,14 @@ void add_speeds(Scenes& scenes) {
   scenes.push_back(drape("gripper speed", "reversed on the mold", [](StressSetup& s) {
     for (auto& path : s.schedule->paths) {
       const double top = path[0].z, end = path[2].z;
-      path = {{0, top}, {2, end}, {2.5, top + 0.1}, {7, top + 0.1}};
+      path = {{0, top}, {2, end}, {2.5, top + 0.1}, {17, top + 0.1}};
     }
   }));
   scenes.back().judge = up;
   scenes.push_back(drape("gripper speed", "stopped at once from 0.2 m/s", [](StressSetup& s) {
     s.schedule->blend_time = 0;
     for (auto& path : s.schedule->paths)
-      path = {{0, path[0].z}, {0.5, path[0].z + 0.1}, {5, path[0].z + 0.1}};
+      path = {{0, path[0].z}, {0.5, path[0].z + 0.1}, {15, path[0].z + 0.1}};
   }));
   scenes.back().judge = up;
   scenes.push_back(drape("gripper speed", "jumps: two knots at one time", [](StressSetup& s) {
@@ -93,7 +140,7 @@ void add_links(Scenes& scenes) {
                             {9, s.schedule->paths[0][0].z + 0.3}};
     for (size_t g = 1; g < 4; ++g) {
       const double z = s.schedule->paths[g][0].z;
-      s.schedule->paths[g] = {{0, z}, {9, z}};
+      s.schedule->paths[g] = {{0, z}, {19, z}};
     }
   };
   scenes.push_back(drape("interlinks", "cannot reach: 300 mm of height for a link of 120 mm", torn));
@@ -102,6 +149,9 @@ void add_links(Scenes& scenes) {
     torn(s);
     s.scene.rig->actuator_force_limit = std::numeric_limits<double>::infinity();
   }));
+  scenes.back().most_shortening = 0.2;  // the ply between pads that links pull together is crushed
+  scenes.back().otherwise = Verdict::stopped;
+  scenes.back().says = "sheared by more than";
   scenes.push_back(drape("interlinks", "pads of 1 g", [](StressSetup& s) { s.scene.rig->pad_mass = 1e-3; }));
   scenes.back().otherwise = Verdict::refused;
   scenes.back().says = "actuators are too stiff";
@@ -151,11 +201,15 @@ void add_gravity_and_friction(Scenes& scenes) {
   scenes.push_back(drape("friction", "drape, coefficient 0", [](StressSetup& s) { s.scene.friction = 0; }));
   scenes.push_back(
       drape("friction", "drape, coefficient 1000", [](StressSetup& s) { s.scene.friction = 1000; }));
-  scenes.push_back(drape("mold edge", "edge inside the draped ply", [](StressSetup& s) {
+  scenes.push_back(drape("mold edge", "edge inside the ply, which may not slide on", [](StressSetup& s) {
     s.scene.mold = Mold(s.scene.mold->shape(), {{0, 0}, {0.15, 0.15}});
   }));
-  scenes.back().otherwise = Verdict::refused;
-  scenes.back().says = "extent";
+  scenes.push_back({"mold edge", "edge inside the mapped ply",
+                    [] { return small_rig({"mold.extent=[[\"0 mm\",\"150 mm\"],[\"0 mm\",\"150 mm\"]]"}); },
+                    [](const StressRun& run) {
+                      return std::vector{StressCheck{"warnings", double(run.setup.warnings.size()), 1, 3}};
+                    }});
+  scenes.back().rests = false;
 }
 
 }  // namespace
@@ -165,6 +219,7 @@ void add_rig_scenes(Scenes& scenes) {
   add_links(scenes);
   add_forces(scenes);
   add_releases(scenes);
+  add_cases(scenes);
   add_gravity_and_friction(scenes);
 }
 
