@@ -185,7 +185,8 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
     // The joint's mobility: of the pad's mass, and of its inertia through the arm.
     const double arm = scene_.rig->joint_offset / scene_.rig->pad_radius;
     const double mobility = (1 + 2 * arm * arm) / scene_.rig->pad_mass;
-    if (std::sqrt(scene_.rig->actuator_stiffness * mobility) * dt() > kServoStep) {
+    servo_dt_ = kServoStep / std::sqrt(scene_.rig->actuator_stiffness * mobility);
+    if (dt() > servo_dt_) {
       throw std::invalid_argument(
           "the actuators are too stiff for the time step: lower grippers.actuator_stiffness or "
           "raise grippers.pad_mass");

@@ -1,6 +1,7 @@
 // A scene, and the model built from it: const, shared by all candidates and threads.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -61,6 +62,8 @@ class Model {
   [[nodiscard]] double selective_dt() const { return selective_dt_; }
   /// The step played where it does not change with the state: step_safety times stable_dt [s].
   [[nodiscard]] double dt() const { return scene_.options.step_safety * stable_dt_; }
+  /// Longest step that the actuators bear: steps that follow the state are longer than dt() [s].
+  [[nodiscard]] double servo_dt() const { return servo_dt_; }
   /// Largest stable step for given stiffness bounds over the nodes' own masses [s]. Nodes that are tied or
   /// clamped count as well: what holds them only lowers frequencies.
   [[nodiscard]] double stable_dt(const NodalStiffness& stiffness) const;
@@ -120,6 +123,7 @@ class Model {
   std::vector<double> own_mass_, gyration2_;         ///< of all nodes, held ones too [kg], [m^2]
   double selective_rate_ = 0;  ///< highest of a node that does not touch, with selective scaling [1/s]
   double stable_dt_ = 0, selective_dt_ = 0, alpha_ = 0;
+  double servo_dt_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace drapeplan

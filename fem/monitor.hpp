@@ -23,11 +23,13 @@ class Monitor {
 
  private:
   void note_penetration(State& state);
+  bool holds_more(const State& state, double limit);
   static bool fail(const State& state, const std::string& what, RunReport& report);
 
   const Model& model_;
   double overhang_ = 0;  ///< of the flat start over the mold's edge [m]
   double slid_ = 0;      ///< of nodes that touch at the last look, over it [m]
+  State half_;           ///< half a step before what is looked at; kept like strains_
   Snapshot strains_;     ///< kept, so that looking allocates nothing after the first time
 };
 

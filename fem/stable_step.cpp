@@ -164,6 +164,8 @@ double stable_step(const Model& model, State& state, StepScratch& scratch) {
 double true_stable_step(const Model& model, const State& state) {
   Scene undamped = model.scene();  // viscous stress changes with strain as well, but is no stiffness
   undamped.options.bulk_viscosity = 0;
+  if (undamped.rig)
+    undamped.rig->actuator_stiffness = 0;  // no term; the longer step would be too long for it
   const Model elastic(std::move(undamped));
   double rate = 0;  // 2 over the step
   for (int round = 0; round < kDashpotRounds; ++round)

@@ -50,7 +50,7 @@ std::vector<StressCheck> common_checks(const StressScene& scene, const StressRun
   if (!(run.setup.scene.options.rates && fabric.rate_dependent())) {
     const ShellEnergy stored = run.model.shell().stored_energy(run.result.state);
     checks.push_back(at_most("energy stored but never taken",
-                             (stored.fabric + stored.hourglass - e.internal) / largest, kGiven));
+                             (stored.fabric + stored.hourglass - e.internal) / largest, scene.most_given));
   }
   if (run.setup.scene.mold)
     checks.push_back(at_most("penetration over thickness", report.largest_penetration / fabric.thickness, 1));

@@ -149,6 +149,21 @@ Mold plateau() {
   return Mold(PolynomialShape{{{12, 0, -0.05 / std::pow(0.1, 12)}}}, square(0.3));
 }
 
+void add_contact_stiffness(Scenes& scenes) {
+  for (const double stiffness : {1e-4, 1.0, 100.0}) {
+    StressScene scene =
+        incline_scene("settings", "contact stiffness " + number_text(stiffness) + ", incline", 30, 0.7);
+    scene.build = [stiffness] {
+      StressSetup setup = incline({});
+      setup.scene.options.contact_stiffness = stiffness;
+      return setup;
+    };
+    // At the highest frequency booked and stored energy differ by the square of the step.
+    if (stiffness >= 1) scene.most_given = 0.05;
+    scenes.push_back(scene);
+  }
+}
+
 void add_walls(Scenes& scenes) {
   scenes.push_back(fall_scene("steep walls", "plateau, wall of up to 80 deg", {plateau(), 0.2}));
   scenes.push_back(
@@ -261,6 +276,7 @@ void add_mold_scenes(Scenes& scenes) {
   add_edges(scenes);
   add_starts(scenes);
   add_gravity(scenes);
+  add_contact_stiffness(scenes);
   add_rest(scenes);
 }
 

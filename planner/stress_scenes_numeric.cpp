@@ -16,20 +16,6 @@ StripSetup woven_strip(double step_safety) {
   return strip;
 }
 
-StressScene drape(std::string group, std::string name, std::function<void(StressSetup&)> change) {
-  StressScene scene{std::move(group), std::move(name),
-                    [change] {
-                      StressSetup setup = corner_drape();
-                      change(setup);
-                      return setup;
-                    },
-                    [](const StressRun& run) {
-                      return std::vector{near("support over weight", support_over_weight(run), 1, 0.02)};
-                    }};
-  scene.most_drift = 1e-4;
-  return scene;
-}
-
 void add_mass(Scenes& scenes) {
   for (const double scaling : {1.0, 1e1, 1e2, 1e3, 1e4, 1e5}) {
     StripSetup strip;
@@ -43,16 +29,27 @@ void add_mass(Scenes& scenes) {
     scenes.push_back(strip_scene("mass scaling", "selective x " + number_text(scaling) + ": sag", strip));
   }
   for (const double scaling : {1.0, 1e3, 1e5}) {
-    scenes.push_back(drape("mass scaling", "x " + number_text(scaling) + ": drape",
-                           [scaling](StressSetup& s) { s.scene.options.mass_scaling = scaling; }));
+    scenes.push_back(drape_scene("mass scaling", "x " + number_text(scaling) + ": drape",
+                                 [scaling](StressSetup& s) { s.scene.options.mass_scaling = scaling; }));
     if (scaling < 1e3) continue;
+    // Too heavy to come to rest in time: it must lie where the light one lies, or say that it is too heavy.
+    scenes.back().rests = false;
+    scenes.back().judge = [](const StressRun& run) {
+      FemOptions light = run.setup.scene.options;
+      light.mass_scaling = 4;
+      const bool told = run.result.report.message.find("inertia") != std::string::npos;
+      return std::vector{
+          at_most(told ? "told that inertia decides; apart from mass x 4 [m]" : "apart from mass x 4 [m]",
+                  apart_from(run, light), told ? 1 : 5e-3)};
+    };
+    if (scaling < 1e5) continue;
     scenes.back().otherwise = Verdict::stopped;
-    scenes.back().says = "inside the mold";
+    scenes.back().says = "fibre";
   }
   for (const double scaling : {2.0, 4.0, 8.0}) {
-    scenes.push_back(drape("mass scaling",
-                           "selective x " + number_text(scaling) + ": drape held by interlinks",
-                           [scaling](StressSetup& s) { s.scene.options.selective_scaling = scaling; }));
+    scenes.push_back(drape_scene("mass scaling",
+                                 "selective x " + number_text(scaling) + ": drape held by interlinks",
+                                 [scaling](StressSetup& s) { s.scene.options.selective_scaling = scaling; }));
     scenes.back().otherwise = Verdict::stopped;
     scenes.back().says = "lower selective_scaling";
   }
@@ -71,9 +68,11 @@ void add_steps(Scenes& scenes) {
     scenes.push_back(
         strip_scene("step", number_text(share) + " of the estimate: woven strip", woven_strip(share)));
     scenes.back().bisect = share == 0.9;
-    scenes.back().fast = share == 0.99;
-    scenes.push_back(drape("step", number_text(share) + " of the estimate: drape",
-                           [share](StressSetup& s) { s.scene.options.step_safety = share; }));
+    scenes.back().fast = share == 0.95;
+    // Bulk viscosity leaves no window of growth up to 0.95 (fem/README.md).
+    if (share > 0.95) scenes.back().otherwise = Verdict::stopped, scenes.back().says = "unstable";
+    scenes.push_back(drape_scene("step", number_text(share) + " of the estimate: drape",
+                                 [share](StressSetup& s) { s.scene.options.step_safety = share; }));
     scenes.back().bisect = share == 0.9;
     scenes.back().rests = true;
   }
@@ -81,8 +80,8 @@ void add_steps(Scenes& scenes) {
     scenes.push_back(
         strip_scene("step", number_text(share) + " of the estimate: woven strip", woven_strip(share)));
     scenes.back().otherwise = Verdict::stopped;
-    scenes.push_back(drape("step", number_text(share) + " of the estimate: drape",
-                           [share](StressSetup& s) { s.scene.options.step_safety = share; }));
+    scenes.push_back(drape_scene("step", number_text(share) + " of the estimate: drape",
+                                 [share](StressSetup& s) { s.scene.options.step_safety = share; }));
     scenes.back().otherwise = Verdict::stopped;
   }
   StripSetup fixed = woven_strip(0.9);
@@ -92,28 +91,34 @@ void add_steps(Scenes& scenes) {
 }
 
 void add_settings(Scenes& scenes) {
-  for (const double stiffness : {1e-3, 1.0, 100.0}) {
-    scenes.push_back(drape("settings", "contact stiffness " + number_text(stiffness),
-                           [stiffness](StressSetup& s) { s.scene.options.contact_stiffness = stiffness; }));
+  for (const double stiffness : {1e-3, 1.0}) {
+    scenes.push_back(
+        drape_scene("settings", "contact stiffness " + number_text(stiffness),
+                    [stiffness](StressSetup& s) { s.scene.options.contact_stiffness = stiffness; }));
   }
-  scenes.push_back(
-      drape("settings", "no contact damping", [](StressSetup& s) { s.scene.options.contact_damping = 0; }));
-  scenes.push_back(drape("settings", "critical contact damping",
-                         [](StressSetup& s) { s.scene.options.contact_damping = 1; }));
+  scenes.push_back(drape_scene("settings", "no contact damping",
+                               [](StressSetup& s) { s.scene.options.contact_damping = 0; }));
+  scenes.back().rests = false;  // it bounces on, as was asked for
+  scenes.back().judge = nullptr;
+  scenes.back().most_given = 0.01;
+  scenes.push_back(drape_scene("settings", "critical contact damping",
+                               [](StressSetup& s) { s.scene.options.contact_damping = 1; }));
   for (const double hourglass : {0.0, 100.0}) {
-    scenes.push_back(drape("settings", "hourglass " + number_text(hourglass),
-                           [hourglass](StressSetup& s) { s.scene.options.hourglass = hourglass; }));
+    scenes.push_back(drape_scene("settings", "hourglass " + number_text(hourglass),
+                                 [hourglass](StressSetup& s) { s.scene.options.hourglass = hourglass; }));
   }
   for (const double viscosity : {0.0, 1.0}) {
-    scenes.push_back(drape("settings", "bulk viscosity " + number_text(viscosity),
-                           [viscosity](StressSetup& s) { s.scene.options.bulk_viscosity = viscosity; }));
-    if (viscosity > 0) continue;
-    scenes.back().otherwise = Verdict::stopped;  // fibres of two stiffnesses are fed by central differences
+    scenes.push_back(
+        drape_scene("settings", "bulk viscosity " + number_text(viscosity),
+                    [viscosity](StressSetup& s) { s.scene.options.bulk_viscosity = viscosity; }));
+    // Without it fibres of two stiffnesses are fed by central differences; as much as is critical is no
+    // better.
+    scenes.back().otherwise = Verdict::stopped;
     scenes.back().says = "unstable";
   }
   for (const double alpha : {0.0, 1e6}) {
-    scenes.push_back(drape("settings", "damping " + number_text(alpha) + " / s",
-                           [alpha](StressSetup& s) { s.scene.damping = alpha; }));
+    scenes.push_back(drape_scene("settings", "damping " + number_text(alpha) + " / s",
+                                 [alpha](StressSetup& s) { s.scene.damping = alpha; }));
     scenes.back().rests = false;
     scenes.back().judge = nullptr;  // it swings on, or has not arrived, as was asked for
   }

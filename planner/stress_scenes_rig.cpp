@@ -10,29 +10,12 @@ namespace {
 
 using Scenes = std::vector<StressScene>;
 
-/// At rest actuators and mold bear the ply, whatever its shape.
-std::vector<StressCheck> borne(const StressRun& run) {
-  return {near("support over weight", support_over_weight(run), 1, 0.02)};
-}
-
 /// Largest distance of joints from where the schedule ends [m].
 double off_command(const StressRun& run) {
   double off = 0;
   for (size_t g = 0; g < run.result.final.joint.size(); ++g)
     off = std::max(off, std::abs(run.result.final.joint[g].z() - run.setup.schedule->paths[g].back().z));
   return off;
-}
-
-StressScene drape(std::string group, std::string name, std::function<void(StressSetup&)> change) {
-  StressScene scene{std::move(group), std::move(name),
-                    [change] {
-                      StressSetup setup = corner_drape();
-                      change(setup);
-                      return setup;
-                    },
-                    borne};
-  scene.most_drift = 1e-4;
-  return scene;
 }
 
 /// A case of 2 x 2 grippers as a user writes it.
@@ -56,7 +39,8 @@ StressSetup small_rig(const std::vector<std::string>& overrides) {
 }
 
 void add_cases(Scenes& scenes) {
-  scenes.push_back({"gripper speed", "a case", [] { return small_rig({}); }, borne});
+  scenes.push_back({"gripper speed", "a case", [] { return small_rig({}); },
+                    [](const StressRun& run) { return std::vector{borne(run)}; }});
   scenes.back().most_drift = 1e-4;
   const auto refuse = [&scenes](std::string group, std::string name, std::string setting, std::string place) {
     scenes.push_back({std::move(group), std::move(name), [setting] { return small_rig({setting}); }, nullptr,
@@ -75,7 +59,7 @@ void add_cases(Scenes& scenes) {
          return small_rig({"schedule.preshape_duration=\"1 ms\"", "schedule.uniform.duration=\"1 ms\""});
        },
        [](const StressRun& run) {
-         std::vector<StressCheck> checks = borne(run);
+         std::vector<StressCheck> checks{borne(run)};
          checks.push_back(at_most("speed [m/s]", run.setup.schedule->largest_velocity(), 0.2001));
          return checks;
        }});
@@ -83,19 +67,19 @@ void add_cases(Scenes& scenes) {
 }
 
 void add_speeds(Scenes& scenes) {
-  scenes.push_back(drape("gripper speed", "as usual", [](StressSetup&) {}));
+  scenes.push_back(drape_scene("gripper speed", "as usual", [](StressSetup&) {}));
   for (const double speed : {10.0, 100.0, 1e4}) {
-    scenes.push_back(drape("gripper speed", "x " + number_text(speed),
-                           [speed](StressSetup& s) { s.schedule = lay_down(s.scene, 0, speed); }));
+    scenes.push_back(drape_scene("gripper speed", "x " + number_text(speed),
+                                 [speed](StressSetup& s) { s.schedule = lay_down(s.scene, 0, speed); }));
     scenes.back().fast = speed == 100;
   }
   // Back up before it touches, at once: the ply hangs from the pads again.
   const auto up = [](const StressRun& run) {
-    std::vector<StressCheck> checks = borne(run);
+    std::vector<StressCheck> checks{borne(run)};
     checks.push_back(at_most("joints off their command [m]", off_command(run), 1e-4));
     return checks;
   };
-  scenes.push_back(drape("gripper speed", "reversed in the air, at once", [](StressSetup& s) {
+  scenes.push_back(drape_scene("gripper speed", "reversed in the air, at once", [](StressSetup& s) {
     s.schedule->blend_time = 0;
     for (auto& path : s.schedule->paths) {
       const double top = path[0].z;
@@ -105,25 +89,25 @@ void add_speeds(Scenes& scenes) {
     s.scene.friction.reset();
   }));
   scenes.back().judge = up;
-  scenes.push_back(drape("gripper speed", "reversed on the mold", [](StressSetup& s) {
+  scenes.push_back(drape_scene("gripper speed", "reversed on the mold", [](StressSetup& s) {
     for (auto& path : s.schedule->paths) {
       const double top = path[0].z, end = path[2].z;
       path = {{0, top}, {2, end}, {2.5, top + 0.1}, {17, top + 0.1}};
     }
   }));
   scenes.back().judge = up;
-  scenes.push_back(drape("gripper speed", "stopped at once from 0.2 m/s", [](StressSetup& s) {
+  scenes.push_back(drape_scene("gripper speed", "stopped at once from 0.2 m/s", [](StressSetup& s) {
     s.schedule->blend_time = 0;
     for (auto& path : s.schedule->paths)
       path = {{0, path[0].z}, {0.5, path[0].z + 0.1}, {15, path[0].z + 0.1}};
   }));
   scenes.back().judge = up;
-  scenes.push_back(drape("gripper speed", "jumps: two knots at one time", [](StressSetup& s) {
+  scenes.push_back(drape_scene("gripper speed", "jumps: two knots at one time", [](StressSetup& s) {
     s.schedule->paths[0][2].time = s.schedule->paths[0][1].time;
   }));
   scenes.back().otherwise = Verdict::refused;
   scenes.back().says = "times";
-  scenes.push_back(drape("gripper speed", "a knot at no finite height", [](StressSetup& s) {
+  scenes.push_back(drape_scene("gripper speed", "a knot at no finite height", [](StressSetup& s) {
     s.schedule->paths[0][2].z = std::numeric_limits<double>::quiet_NaN();
   }));
   scenes.back().otherwise = Verdict::refused;
@@ -143,36 +127,50 @@ void add_links(Scenes& scenes) {
       s.schedule->paths[g] = {{0, z}, {19, z}};
     }
   };
-  scenes.push_back(drape("interlinks", "cannot reach: 300 mm of height for a link of 120 mm", torn));
+  scenes.push_back(drape_scene("interlinks", "cannot reach: 300 mm of height for a link of 120 mm", torn));
   scenes.back().fast = true;
-  scenes.push_back(drape("interlinks", "the same with actuators of any force", [torn](StressSetup& s) {
+  scenes.push_back(drape_scene("interlinks", "the same with actuators of any force", [torn](StressSetup& s) {
     torn(s);
     s.scene.rig->actuator_force_limit = std::numeric_limits<double>::infinity();
   }));
   scenes.back().most_shortening = 0.2;  // the ply between pads that links pull together is crushed
   scenes.back().otherwise = Verdict::stopped;
   scenes.back().says = "sheared by more than";
-  scenes.push_back(drape("interlinks", "pads of 1 g", [](StressSetup& s) { s.scene.rig->pad_mass = 1e-3; }));
+  scenes.push_back(
+      drape_scene("interlinks", "pads of 1 g", [](StressSetup& s) { s.scene.rig->pad_mass = 1e-3; }));
   scenes.back().otherwise = Verdict::refused;
   scenes.back().says = "actuators are too stiff";
-  scenes.push_back(drape("interlinks", "tilt limit of 0.001 deg",
-                         [](StressSetup& s) { s.scene.rig->tilt_limit = 1e-3 * kDegree; }));
-  scenes.push_back(drape("interlinks", "joints 200 mm above pads of 20 mm", [](StressSetup& s) {
+  scenes.push_back(drape_scene("interlinks", "tilt limit of 0.001 deg",
+                               [](StressSetup& s) { s.scene.rig->tilt_limit = 1e-3 * kDegree; }));
+  // Pads that may not tilt stand on single nodes and chatter there against the stop.
+  scenes.back().judge = [](const StressRun& run) { return std::vector{borne(run, 30)}; };
+  scenes.push_back(drape_scene("interlinks", "joints 200 mm above pads of 20 mm", [](StressSetup& s) {
     s.scene.rig->joint_offset = 0.2;
     s.schedule = lay_down(s.scene);
   }));
-  scenes.back().otherwise = Verdict::refused;
-  scenes.back().says = "actuators are too stiff";
+  scenes.back().rests = false;  // long arms under light pads swing on
+  scenes.back().judge = nullptr;
 }
 
 void add_forces(Scenes& scenes) {
-  scenes.push_back(drape("actuator force", "limit 0: nothing holds the rig",
-                         [](StressSetup& s) { s.scene.rig->actuator_force_limit = 0; }));
-  scenes.push_back(drape("actuator force", "no limit, 20 mm into the mold", [](StressSetup& s) {
+  scenes.push_back(drape_scene("actuator force", "limit 0: nothing holds the rig",
+                               [](StressSetup& s) { s.scene.rig->actuator_force_limit = 0; }));
+  // The ply's weight draws pads, which have none, down against mass damping: W / (alpha M).
+  scenes.back().rests = false;
+  scenes.back().judge = [](const StressRun& run) {
+    const Scene& scene = run.setup.scene;
+    const double ply = weight_of(scene) / kGravity * scene.options.mass_scaling;
+    const double mass = ply + scene.rig->count() * scene.rig->pad_mass;
+    const Snapshot &before = run.frames[run.frames.size() - 2], &after = run.frames.back();
+    const double time = (after.time - before.time) / scene.options.time_scaling;
+    const double speed = (before.pad[0].z() - after.pad[0].z()) / time;
+    return std::vector{near("sinks with [m/s]", speed, weight_of(scene) / (run.model.alpha() * mass), 0.03)};
+  };
+  scenes.push_back(drape_scene("actuator force", "no limit, 20 mm into the mold", [](StressSetup& s) {
     s.scene.rig->actuator_force_limit = std::numeric_limits<double>::infinity();
     s.schedule = lay_down(s.scene, 0.02);
   }));
-  scenes.push_back(drape("actuator force", "1000 N a pad, 0.5 m into the mold", [](StressSetup& s) {
+  scenes.push_back(drape_scene("actuator force", "1000 N a pad, 0.5 m into the mold", [](StressSetup& s) {
     s.scene.rig->actuator_force_limit = 1e3;
     s.schedule = lay_down(s.scene, 0.5);
   }));
@@ -180,30 +178,46 @@ void add_forces(Scenes& scenes) {
     scenes[k].otherwise = Verdict::stopped;
     scenes[k].says = "inside the mold";
   }
-  scenes.push_back(drape("actuator force", "stiffness 1e9 N/m",
-                         [](StressSetup& s) { s.scene.rig->actuator_stiffness = 1e9; }));
+  scenes.push_back(drape_scene("actuator force", "stiffness 1e9 N/m",
+                               [](StressSetup& s) { s.scene.rig->actuator_stiffness = 1e9; }));
   scenes.back().otherwise = Verdict::refused;
   scenes.back().says = "actuators are too stiff";
 }
 
 void add_releases(Scenes& scenes) {
-  scenes.push_back(drape("release", "all pads let go on the mold",
-                         [](StressSetup& s) { s.schedule->release.assign(4, 6.0); }));
-  scenes.push_back(drape("release", "all pads let go in the air",
-                         [](StressSetup& s) { s.schedule->release.assign(4, 1.0); }));
-  scenes.push_back(
-      drape("release", "at the first step", [](StressSetup& s) { s.schedule->release.assign(4, 0.0); }));
+  for (const auto& [name, time] : {std::pair{"all pads let go on the mold", 6.0},
+                                   {"all pads let go in the air", 1.0},
+                                   {"at the first step", 0.0}}) {
+    scenes.push_back(
+        drape_scene("release", name, [t = time](StressSetup& s) { s.schedule->release.assign(4, t); }));
+    // Without pads the ply goes on to slide, slowly against mass damping, which bears some of it.
+    scenes.back().judge = [](const StressRun& run) { return std::vector{borne(run, 0.1)}; };
+    scenes.back().most_drift = 2e-3;
+  }
+  // Contact springs sized for a pad once stayed on its light nodes: the end then hung on the step.
+  scenes.push_back(drape_scene("release", "one pad lets go on the mold: as with a quarter of the step",
+                               [](StressSetup& s) {
+                                 s.schedule->release.assign(4, std::nullopt);
+                                 s.schedule->release[3] = 6.0;
+                               }));
+  scenes.back().judge = [](const StressRun& run) {
+    return std::vector{borne(run), at_most("apart [m]", apart_from(run, safer(run)), 5e-4)};
+  };
+  scenes.back().most_drift = 1e-3;
 }
 
 void add_gravity_and_friction(Scenes& scenes) {
   scenes.push_back(
-      drape("gravity", "x 100, drape", [](StressSetup& s) { s.scene.gravity = 100 * kGravity; }));
-  scenes.push_back(drape("friction", "drape, coefficient 0", [](StressSetup& s) { s.scene.friction = 0; }));
+      drape_scene("gravity", "x 100, drape", [](StressSetup& s) { s.scene.gravity = 100 * kGravity; }));
   scenes.push_back(
-      drape("friction", "drape, coefficient 1000", [](StressSetup& s) { s.scene.friction = 1000; }));
-  scenes.push_back(drape("mold edge", "edge inside the ply, which may not slide on", [](StressSetup& s) {
-    s.scene.mold = Mold(s.scene.mold->shape(), {{0, 0}, {0.15, 0.15}});
-  }));
+      drape_scene("friction", "drape, coefficient 0", [](StressSetup& s) { s.scene.friction = 0; }));
+  scenes.back().most_drift = 1e-3;  // nothing but mass damping ends its sliding
+  scenes.push_back(
+      drape_scene("friction", "drape, coefficient 1000", [](StressSetup& s) { s.scene.friction = 1000; }));
+  scenes.push_back(
+      drape_scene("mold edge", "edge inside the ply, which may not slide on", [](StressSetup& s) {
+        s.scene.mold = Mold(s.scene.mold->shape(), {{0, 0}, {0.15, 0.15}});
+      }));
   scenes.push_back({"mold edge", "edge inside the mapped ply",
                     [] { return small_rig({"mold.extent=[[\"0 mm\",\"150 mm\"],[\"0 mm\",\"150 mm\"]]"}); },
                     [](const StressRun& run) {
