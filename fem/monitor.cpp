@@ -36,8 +36,9 @@ std::string millimetres(double length) {
 }  // namespace
 
 Monitor::Monitor(const Model& model) : model_(model) {
+  half_ = model.flat_state(0);  // takes its room
   if (!model.scene().mold) return;
-  const State flat = model.flat_state(0);
+  const State& flat = half_;
   for (size_t n = 0; n < size_t(model.node_count()); ++n)
     overhang_ = std::max(overhang_, beyond(model.scene().mold->extent(), flat.x.x[n], flat.x.y[n]));
 }

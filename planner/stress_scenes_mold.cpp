@@ -160,6 +160,7 @@ void add_contact_stiffness(Scenes& scenes) {
     };
     // At the highest frequency booked and stored energy differ by the square of the step.
     if (stiffness >= 1) scene.most_given = 0.05;
+    if (stiffness > 1) scene.otherwise = Verdict::stopped, scene.says = "unstable";
     scenes.push_back(scene);
   }
 }
