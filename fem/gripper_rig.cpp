@@ -11,7 +11,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kServoDamping = 1;   // damping ratio of a joint on its actuator: a servo does not ring
-constexpr double kRimSlack = 1e-9;    // nodes on the rim belong to the pad, whatever the round-off
 constexpr double kStartSlack = 1e-6;  // [m]; a schedule is rounded to it
 
 std::string gripper_name(const RigOptions& rig, int index);
@@ -84,13 +83,23 @@ struct Damped {
       : keep((1 - 0.5 * alpha * dt) / (1 + 0.5 * alpha * dt)), gain(dt / (1 + 0.5 * alpha * dt)) {}
 };
 
+/// The pad whose centre is nearest to a node; the first one of several. Pads that all but touch would claim
+/// the same nodes.
+int nearest_pad(const RigOptions& rig, const Eigen::Vector2d& node) {
+  int nearest = 0;
+  for (int g = 1; g < rig.count(); ++g) {
+    if ((node - rig.place(g)).norm() < (node - rig.place(nearest)).norm()) nearest = g;
+  }
+  return nearest;
+}
+
 }  // namespace
 
 GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>& rest,
                        const std::vector<double>& mass, const std::vector<double>& inertia,
                        std::vector<Eigen::Vector2d> place, double turn)
     : rig_(rig), links_(rig, place), stop_(rig, turn), place_(std::move(place)), turn_(turn) {
-  std::vector<char> taken(rest.size(), 0);
+  const double reach = reach_of_pads(rig, rest);
   for (int g = 0; g < rig.count(); ++g) {
     Pad pad;
     pad.bare_mass = pad.mass = rig.pad_mass;
@@ -98,10 +107,7 @@ GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>
     pad.first = int(tied_.size());
     for (size_t n = 0; n < rest.size(); ++n) {
       const Eigen::Vector2d offset = rest[n] - rig.place(g);
-      if (offset.norm() > rig.pad_radius * (1 + kRimSlack)) continue;
-      if (taken[n])
-        throw std::invalid_argument(gripper_name(rig, g) + " shares a ply node with another gripper");
-      taken[n] = 1;
+      if (offset.norm() > reach || nearest_pad(rig, rest[n]) != g) continue;
       tied_.push_back(int(n));
       nodes_.push_back({{offset.x(), offset.y(), 0}, mass[n], inertia[n]});
       pad.mass += mass[n];

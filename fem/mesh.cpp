@@ -22,13 +22,17 @@ void divide(std::vector<double>& lines, double end, double mesh_size) {
 
 std::vector<double> mesh_lines(double lower, double upper, double mesh_size,
                                const std::vector<double>& places) {
+  constexpr double kNarrow = 0.75;  // of the next cell
   std::vector<double> lines{lower};
-  for (const double place : places) divide(lines, place, mesh_size);
+  for (const double place : places) {
+    if (place < upper) divide(lines, place, mesh_size);  // what lies before the last line is passed over
+  }
   divide(lines, upper, mesh_size);
   if (places.empty()) return lines;
-  if (lines.size() > 3 && lines[1] - lines[0] < 0.5 * (lines[2] - lines[1])) lines.erase(lines.begin() + 1);
+  if (lines.size() > 3 && lines[1] - lines[0] < kNarrow * (lines[2] - lines[1]))
+    lines.erase(lines.begin() + 1);
   const size_t last = lines.size() - 1;
-  if (last > 2 && lines[last] - lines[last - 1] < 0.5 * (lines[last - 1] - lines[last - 2]))
+  if (last > 2 && lines[last] - lines[last - 1] < kNarrow * (lines[last - 1] - lines[last - 2]))
     lines.erase(lines.end() - 2);
   return lines;
 }

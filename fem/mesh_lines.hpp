@@ -5,8 +5,9 @@
 
 namespace drapeplan {
 
-/// Increasing lines from `lower` to `upper` through `places` (increasing) [m]: equal cells between them, at
-/// most `mesh_size`. A margin narrower than half a cell joins the cell beside it.
+/// Increasing lines from `lower` to `upper` through `places` (increasing; those outside are left out) [m]:
+/// equal cells between them, at most `mesh_size`. A margin narrower than three quarters of a cell joins the
+/// cell beside it.
 std::vector<double> mesh_lines(double lower, double upper, double mesh_size,
                                const std::vector<double>& places);
 

@@ -363,6 +363,7 @@ std::uint64_t Model::fingerprint() const {
                  double(o.section_points), double(o.fibre_points), double(o.step_interval), o.hourglass,
                  o.bulk_viscosity, o.contact_stiffness, o.contact_damping, scene_.gravity.value_or(0),
                  scene_.friction.value_or(-1), scene_.position.x(), scene_.position.y(), scene_.angle});
+  if (o.precision == Precision::single_lanes) hash.add(std::string_view("single"));
   if (scene_.mold) add_mold(hash, *scene_.mold);
   if (scene_.rest) add(std::array{scene_.rest->speed, scene_.rest->hold});
   if (scene_.loads) {
@@ -393,13 +394,28 @@ std::uint64_t Model::fingerprint() const {
 std::vector<std::string> Model::term_names() const {
   std::vector<std::string> names;
   for (const auto& term : terms_) names.emplace_back(term->name());
+  const int points = scene_.options.section_points;
+  names.front() += ", " + std::to_string(points) + (points == 1 ? " section point" : " section points");
   if (fibre_inertia_) names.emplace_back("mass on fibres");
   if (scene_.damping) names.emplace_back("mass damping");
   if (rig_) names.emplace_back(scene_.rig->interlinks ? "gripper rig with interlinks" : "gripper rig");
+  if (rig_ && scene_.rig->fixed) names.emplace_back("fixed joint");
+  if (rig_ && scene_.rig->rotation_limits) names.emplace_back("rotation limits");
+  if (rig_ && scene_.rig->release_time) names.emplace_back("release");
   if (!scene_.clamped.empty()) names.emplace_back("clamp");
   if (!scene_.pinned.empty()) names.emplace_back("pin");
   if (!scene_.grips.empty()) names.emplace_back("grips");
+  if (scene_.rest) names.emplace_back("end at rest");
   return names;
+}
+
+ReportParts Model::report_parts() const {
+  return {.external = scene_.gravity || scene_.loads || scene_.rig || !scene_.grips.empty(),
+          .contact = scene_.mold.has_value(),
+          .friction = scene_.friction.has_value(),
+          .damping = scene_.damping.has_value(),
+          .constraint = scene_.rig.has_value(),
+          .links = scene_.rig && (scene_.rig->interlinks || scene_.rig->fixed)};
 }
 
 State Model::flat_state(double height) const {
@@ -412,7 +428,7 @@ State Model::flat_state(double height) const {
   }
   state.history.assign(shell_->history_count(), 0.0);
   if (fibre_inertia_) state.edges.fill(VectorField(n));
-  state.lightness.assign(padded(n), 1.0);
+  if (scene_.options.step_interval > 0) state.lightness.assign(padded(n), 1.0);
   state.dt = state.dt_before = dt();
   state.stable_dt = stable_dt_;
   const Eigen::Vector2d& place = scene_.position;

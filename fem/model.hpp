@@ -14,6 +14,7 @@
 #include "fem/loads.hpp"
 #include "fem/mesh.hpp"
 #include "fem/options.hpp"
+#include "fem/report.hpp"
 #include "fem/shell.hpp"
 #include "fem/start.hpp"
 #include "fem/term.hpp"
@@ -54,7 +55,9 @@ class Model {
   [[nodiscard]] const Shell& shell() const { return *shell_; }
   [[nodiscard]] const std::optional<GripperRig>& rig() const { return rig_; }
   [[nodiscard]] const std::optional<FibreInertia>& fibre_inertia() const { return fibre_inertia_; }
+  /// All that the scene has, in words; what is not named is not there.
   [[nodiscard]] std::vector<std::string> term_names() const;
+  [[nodiscard]] ReportParts report_parts() const;
 
   /// Stable step for all strains that the laws allow [s]; see stable_step() for that of a state.
   [[nodiscard]] double stable_dt() const { return stable_dt_; }

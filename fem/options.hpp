@@ -5,6 +5,9 @@
 
 namespace drapeplan {
 
+/// Of the numbers in which the shell's forces are computed; all else is in double.
+enum class Precision { double_lanes, single_lanes };
+
 struct FemOptions {
   double mesh_size = 0.010;  ///< largest element edge [m]
   int section_points = 3;    ///< through the thickness: 1, 3 or 5
@@ -16,6 +19,7 @@ struct FemOptions {
   double step_safety = 0.9;  ///< share of the estimated stable step
   int step_interval = 32;    ///< steps between two choices of the step; 0: one step, safe for all strains
   bool rates = true;         ///< false: slowest curves only, whatever tables the material has
+  Precision precision = Precision::double_lanes;  ///< of the shell's forces; the rest is in double
   int fibre_points =
       2;  ///< across each fibre at mid-thickness: 1 or 2; with 1 only hourglass control is left
   double hourglass = 0.005;  ///< in-plane hourglass stiffness over that of a bilinear element of fibre in

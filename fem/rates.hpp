@@ -69,6 +69,8 @@ class RateLookup {
   [[nodiscard]] double largest_slope(double gain) const;
 
  private:
+  friend class SingleRateLookup;  // the same on lanes of floats
+
   /// Derivative of octaves().
   [[nodiscard]] static Lanes octave_slope(const Lanes& x) {
     const Lanes y = octaves(x);

@@ -6,6 +6,16 @@
 
 namespace drapeplan {
 
+/// What a scene has that some figures measure; where it is absent, the figures are 0 and are not written.
+struct ReportParts {
+  bool external = true;    ///< gravity, loads, actuators or grips
+  bool contact = true;     ///< a mold
+  bool friction = true;    ///< with friction
+  bool damping = true;     ///< mass damping
+  bool constraint = true;  ///< a rig: interlinks, guides, tilt stops
+  bool links = true;       ///< interlinks or a fixed joint
+};
+
 /// Books of one run [J]. Work is booked per term with the mean of the two half-step velocities, so that
 /// kinetic = external - internal - friction - contact - damping - constraint closes to round-off.
 struct Energies {
@@ -26,6 +36,7 @@ enum class RunStatus { done, diverged, paused };
 struct RunReport {
   RunStatus status = RunStatus::done;
   std::string message;  ///< why it ended
+  ReportParts parts;
   std::int64_t steps = 0;
   double dt = 0;              ///< mean step [s], of the simulation
   double simulated_time = 0;  ///< [s], of the simulation (schedule time / time scaling)

@@ -54,9 +54,16 @@ struct RigOptions {
   }
 };
 
-/// Columns' places along u and rows' places along v [m], increasing.
-std::vector<double> column_places(const RigOptions& rig);
-std::vector<double> row_places(const RigOptions& rig);
+/// Mesh lines through columns of pads along u, and through rows of them along v [m], increasing. The lines of
+/// a pad are so far apart, about `mesh_size`, that the nodes which it holds span the area of its disc.
+std::vector<double> column_places(const RigOptions& rig, double mesh_size);
+std::vector<double> row_places(const RigOptions& rig, double mesh_size);
+
+/// How far from its centre a pad holds nodes [m]: so that the nodes under a pad that lies wholly on the ply
+/// span an area as near to its disc's as can be. A cut at the radius itself would leave discs a third too
+/// small.
+/// @param rest  places of the nodes (u, v) [m].
+double reach_of_pads(const RigOptions& rig, const std::vector<Eigen::Vector2d>& rest);
 
 /// Pairs of neighbouring grippers (indices), each joined by an interlink; warp direction first, in fixed
 /// order.

@@ -61,10 +61,4 @@ Vector3d RotationStop::stop(const Kick& kick, Vector3d& after) const {
   return moment;
 }
 
-double RotationStop::excess(const Vector3d& normal) const {
-  double largest = std::atan2(normal.head<2>().norm(), normal.z()) - tilt_limit_;
-  for_each_limit(normal, [&](const Limit& limit) { largest = std::max(largest, limit.excess); });
-  return largest;
-}
-
 }  // namespace drapeplan

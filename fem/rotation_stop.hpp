@@ -27,9 +27,6 @@ class RotationStop {
   /// Adds to `after`, the angular velocity at t + dt/2 without stops [rad/s]. Returns the moment [N m].
   Eigen::Vector3d stop(const Kick& kick, Eigen::Vector3d& after) const;
 
-  /// Largest excess over a limit [rad]; <= 0 within all of them.
-  [[nodiscard]] double excess(const Eigen::Vector3d& normal) const;
-
  private:
   /// How far beyond a limit [rad], and its gradient for a turn of the pad.
   struct Limit {

@@ -52,28 +52,51 @@ struct ElementMotion {
   Vec3<V> a1, a2, c1, c2, mean, hx, hd;
 };
 
-/// @tparam kRectangle  see ElementGeometry::rectangle: the same, less what is zero.
+/// Of positions. @tparam kRectangle  see ElementGeometry::rectangle: the same, less what is zero.
+template <bool kRectangle, class V>
+void position_motion(const ElementGeometry<V>& g, const Corners<V>& x, Vec3<V>& a1, Vec3<V>& a2,
+                     Vec3<V>& hx) {
+  const Vec3<V> p = x[0] - x[2], q = x[1] - x[3];
+  if constexpr (kRectangle) {
+    a1 = g.b11 * (q - p);
+    a2 = g.b21 * (q + p);
+    hx = (x[0] + x[2]) - (x[1] + x[3]);
+  } else {
+    a1 = g.b10 * p + g.b11 * q;
+    a2 = g.b20 * p + g.b21 * q;
+    hx = (x[0] + x[2]) - (x[1] + x[3]) - g.skew1 * a1 - g.skew2 * a2;
+  }
+}
+
+/// Differences and sums of directors along both diagonals.
+template <class V>
+struct DirectorPairs {
+  explicit DirectorPairs(const Corners<V>& d)
+      : p(d[0] - d[2]), q(d[1] - d[3]), even(d[0] + d[2]), odd(d[1] + d[3]) {}
+  DirectorPairs() = default;
+  Vec3<V> p, q, even, odd;
+};
+
+template <bool kRectangle, class V>
+void director_motion(const ElementGeometry<V>& g, const DirectorPairs<V>& d, Vec3<V>& c1, Vec3<V>& c2,
+                     Vec3<V>& mean, Vec3<V>& hd) {
+  mean = V(0.25) * (d.even + d.odd);
+  if constexpr (kRectangle) {
+    c1 = g.b11 * (d.q - d.p);
+    c2 = g.b21 * (d.q + d.p);
+    hd = d.even - d.odd;
+  } else {
+    c1 = g.b10 * d.p + g.b11 * d.q;
+    c2 = g.b20 * d.p + g.b21 * d.q;
+    hd = d.even - d.odd - g.skew1 * c1 - g.skew2 * c2;
+  }
+}
+
 template <bool kRectangle = false, class V>
 ElementMotion<V> element_motion(const ElementGeometry<V>& g, const Corners<V>& x, const Corners<V>& d) {
-  const Vec3<V> p = x[0] - x[2], q = x[1] - x[3], dp = d[0] - d[2], dq = d[1] - d[3];
-  const Vec3<V> even = d[0] + d[2], odd = d[1] + d[3];
   ElementMotion<V> m;
-  m.mean = V(0.25) * (even + odd);
-  if constexpr (kRectangle) {
-    m.a1 = g.b11 * (q - p);
-    m.a2 = g.b21 * (q + p);
-    m.c1 = g.b11 * (dq - dp);
-    m.c2 = g.b21 * (dq + dp);
-    m.hx = (x[0] + x[2]) - (x[1] + x[3]);
-    m.hd = even - odd;
-    return m;
-  }
-  m.a1 = g.b10 * p + g.b11 * q;
-  m.a2 = g.b20 * p + g.b21 * q;
-  m.c1 = g.b10 * dp + g.b11 * dq;
-  m.c2 = g.b20 * dp + g.b21 * dq;
-  m.hx = (x[0] + x[2]) - (x[1] + x[3]) - g.skew1 * m.a1 - g.skew2 * m.a2;
-  m.hd = even - odd - g.skew1 * m.c1 - g.skew2 * m.c2;
+  position_motion<kRectangle>(g, x, m.a1, m.a2, m.hx);
+  director_motion<kRectangle>(g, DirectorPairs<V>(d), m.c1, m.c2, m.mean, m.hd);
   return m;
 }
 
@@ -106,7 +129,7 @@ struct TransverseShear {
 /// Products of an element's derivatives: all that strains, at any height and place across, depend on.
 template <class V>
 struct MotionProducts {
-  V a11, a22, a12;       ///< a_i.a_j
+  V a11, a22, a12;       ///< a_i.a_j; in single lanes a11 and a22 less 1: see shell_single.hpp
   V b11, b12, b21, b22;  ///< a_i.c_j
   V c11, c22, c12;       ///< c_i.c_j
   V a1h, a2h, hh;        ///< with hx

@@ -22,14 +22,15 @@
 
 namespace drapeplan {
 
-/// Forces that the element exerts on its corners: on positions [N] and on directors [N m].
+/// What pulls at an element, per rest area: on its derivatives a_k (n) and c_k (m); on hx, hd and the mean
+/// director.
 /// @param law  stresses at section points, like StaticLaw.
-template <int N, int A, bool kRectangle, class V, class Law>
-void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, Law& law,
-                  FibreViscosity<V, A>& viscosity, const Corners<V>& x, const Corners<V>& d,
-                  Corners<V>& force, Corners<V>& moment) {
-  const ElementMotion<V> m = element_motion<kRectangle>(g, x, d);
-  const MotionProducts<V> products = motion_products(m);
+/// @param give  gets these seven. They are passed one by one: copies of what holds them all would not stay in
+///     registers.
+template <int N, int A, bool kRectangle, class V, class Law, class Give>
+void element_pull(const ElementGeometry<V>& g, const KernelMaterial& material, Law& law,
+                  FibreViscosity<V, A>& viscosity, const ElementMotion<V>& m,
+                  const MotionProducts<V>& products, const Give& give) {
   Section<N, A, V> section(g, material, products);
   section.look_up(law, viscosity);
   const SectionForces<V> f = section.forces();
@@ -55,25 +56,58 @@ void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, L
   const Vec3<V> on_hx = (g.area * f.uneven1) * m.a1 + (g.area * f.uneven2) * m.a2 +
                         (g.area * f.across + h.membrane) * m.hx + on_warp * m.mean;
   const Vec3<V> on_hd = h.director * m.hd;
+  give(n1, n2, on_hx, m1, m2, on_hd, on_mean);
+}
 
-  // A force is minus the energy's derivative. In a rectangle b = (-b11, b11, b11, -b11) and
-  // (b21, b21, -b21, -b21).
+/// Forces of these on corners of an element that is no rectangle.
+template <class V>
+void corners_of(const ElementGeometry<V>& g, const Vec3<V>& on1, const Vec3<V>& on2, const Vec3<V>& on_h,
+                Corners<V>& out) {
+  const Vec3<V> r1 = g.area * on1 - g.skew1 * on_h, r2 = g.area * on2 - g.skew2 * on_h;
+  const Vec3<V> p = g.b10 * r1 + g.b20 * r2, r = g.b11 * r1 + g.b21 * r2;
+  out = {-p - on_h, on_h - r, p - on_h, r + on_h};
+}
+
+/// Forces on the corners [N]: minus the energy's derivative. In a rectangle b = (-b11, b11, b11, -b11) and
+/// (b21, b21, -b21, -b21).
+template <bool kRectangle, class V>
+void corner_forces(const ElementGeometry<V>& g, const Vec3<V>& n1, const Vec3<V>& n2, const Vec3<V>& on_hx,
+                   Corners<V>& force) {
   if constexpr (kRectangle) {
     const Vec3<V> u = (g.area * g.b11) * n1, v = (g.area * g.b21) * n2, sum = u + v, difference = u - v;
     force = {difference - on_hx, on_hx - sum, -difference - on_hx, sum + on_hx};
+  } else {
+    corners_of(g, n1, n2, on_hx, force);
+  }
+}
+
+/// Likewise on the directors of corners [N m].
+template <bool kRectangle, class V>
+void corner_moments(const ElementGeometry<V>& g, const Vec3<V>& m1, const Vec3<V>& m2, const Vec3<V>& on_hd,
+                    const Vec3<V>& on_mean, Corners<V>& moment) {
+  if constexpr (kRectangle) {
     const Vec3<V> mu = (g.area * g.b11) * m1, mv = (g.area * g.b21) * m2;
     const Vec3<V> msum = mu + mv, mdifference = mu - mv, even = on_mean + on_hd, odd = on_mean - on_hd;
     moment = {mdifference - even, -msum - odd, -mdifference - even, msum - odd};
   } else {
-    const auto corners = [&g](const Vec3<V>& on1, const Vec3<V>& on2, const Vec3<V>& on_h, Corners<V>& out) {
-      const Vec3<V> r1 = g.area * on1 - g.skew1 * on_h, r2 = g.area * on2 - g.skew2 * on_h;
-      const Vec3<V> p = g.b10 * r1 + g.b20 * r2, r = g.b11 * r1 + g.b21 * r2;
-      out = {-p - on_h, on_h - r, p - on_h, r + on_h};
-    };
-    corners(n1, n2, on_hx, force);
-    corners(m1, m2, on_hd, moment);
+    corners_of(g, m1, m2, on_hd, moment);
     for (Vec3<V>& at : moment) at = at - on_mean;
   }
+}
+
+/// Forces that the element exerts on its corners.
+template <int N, int A, bool kRectangle, class V, class Law>
+void shell_forces(const ElementGeometry<V>& g, const KernelMaterial& material, Law& law,
+                  FibreViscosity<V, A>& viscosity, const Corners<V>& x, const Corners<V>& d,
+                  Corners<V>& force, Corners<V>& moment) {
+  const ElementMotion<V> m = element_motion<kRectangle>(g, x, d);
+  const MotionProducts<V> products = motion_products(m);
+  const auto give = [&](const Vec3<V>& n1, const Vec3<V>& n2, const Vec3<V>& on_hx, const Vec3<V>& m1,
+                        const Vec3<V>& m2, const Vec3<V>& on_hd, const Vec3<V>& on_mean) {
+    corner_forces<kRectangle>(g, n1, n2, on_hx, force);
+    corner_moments<kRectangle>(g, m1, m2, on_hd, on_mean, moment);
+  };
+  element_pull<N, A, kRectangle>(g, material, law, viscosity, m, products, give);
 }
 
 /// Stored energy of one element [J].

@@ -3,6 +3,10 @@
 
 namespace drapeplan {
 
+template class ShellTerm<5, 1, false>;
+template class ShellTerm<5, 1, true>;
+template class ShellTerm<5, 2, false>;
+template class ShellTerm<5, 2, true>;
 template std::unique_ptr<Shell> make_shell_of<5>(const Mesh&, const Fabric&, const FemOptions&);
 
 }  // namespace drapeplan

@@ -74,6 +74,20 @@ struct SectionForces {
   V across;                               ///< of points across: on hx.hx
 };
 
+/// |f| - 1 and 1 / |f| for a given |f|^2, or, where lanes are single, for |f|^2 - 1 (lanes_single.hpp).
+template <class V>
+void strain_and_inverse(const V& square, V& strain, V& inverse) {
+  V length;
+  root_and_inverse(square, length, inverse);
+  strain = length - V(1.0);
+}
+template <class V>
+V inverse_length(const V& square) {
+  V length, inverse;
+  root_and_inverse(square, length, inverse);
+  return inverse;
+}
+
 /// The section of a block of elements at all its points. In stages, each for all places at once: chains of
 /// roots and of lookups are long, and side by side they fill the pipes.
 template <int N, int A, class V>
@@ -95,14 +109,14 @@ class Section {
       if constexpr (!kAcross || k != kMiddle) {
         unroll<2>([&](auto fibre) {
           const size_t at = place_of(k, fibre);
-          stress_[at] = law.fibre(V(length_[at] - V(1.0)), 3 * k + fibre);
+          stress_[at] = law.fibre(strain_[at], 3 * k + fibre);
         });
       }
     });
     unroll<2>([&](auto fibre) {
       unroll<size_t(A)>([&](auto a) {
         const size_t at = middle_place(fibre, a);
-        const V e = length_[at] - V(1.0);
+        const V& e = strain_[at];
         V& before = viscosity.strain[2 * a + fibre];
         if constexpr (kAcross) stress_[at] = law.fibre(e, fibre_slot<N>(kMiddle, fibre, a));
         stress_[at] += viscosity.modulus[fibre] * (e - before);
@@ -146,9 +160,9 @@ class Section {
     return kAcross ? 2 * (kPoints - 1) + 2 * fibre + a : place_of(kMiddle, fibre);
   }
 
-  /// At heights s: |a + s c|^2 and the sine between both fibres.
+  /// At heights s: |a + s c|^2 (less 1 in single lanes) and the sine between both fibres.
   void stretch(const MotionProducts<V>& m) {
-    std::array<V, 2 * kPoints> square, length;
+    std::array<V, 2 * kPoints> square;
     unroll<kPoints>([&](auto k) {
       const V s(SectionRule<N>::place[k] * thickness_);
       square[2 * k] = m.a11;
@@ -161,8 +175,11 @@ class Section {
       }
     });
     unroll<2 * kPoints>([&](auto k) {
-      root_and_inverse(square[k], length[k], inverse_[k]);
-      if constexpr (!kAcross || k / 2 != kMiddle) length_[place_of(k / 2, k % 2)] = length[k];
+      if constexpr (!kAcross || k / 2 != kMiddle) {
+        strain_and_inverse(square[k], strain_[place_of(k / 2, k % 2)], inverse_[k]);
+      } else {
+        inverse_[k] = inverse_length(square[k]);
+      }
     });
     unroll<kPoints>([&](auto k) { sine_[k] = sine_[k] * inverse_[2 * k] * inverse_[2 * k + 1]; });
   }
@@ -172,8 +189,8 @@ class Section {
     unroll<2>([&](auto fibre) {
       const V side = V(2.0) * across_[fibre] * (fibre == 0 ? m.a1h : m.a2h);
       const V middle = (fibre == 0 ? m.a11 : m.a22) + across_[fibre] * across_[fibre] * m.hh;
-      root_and_inverse(V(middle + side), length_[middle_place(fibre, 0)], unit_[2 * fibre]);
-      root_and_inverse(V(middle - side), length_[middle_place(fibre, 1)], unit_[2 * fibre + 1]);
+      strain_and_inverse(V(middle + side), strain_[middle_place(fibre, 0)], unit_[2 * fibre]);
+      strain_and_inverse(V(middle - side), strain_[middle_place(fibre, 1)], unit_[2 * fibre + 1]);
     });
   }
 
@@ -202,7 +219,7 @@ class Section {
   std::array<V, 2> across_;             ///< y of the places across, over h.x [1/m]
   std::array<V, 2 * kPoints> inverse_;  ///< 1 / length of fibre vectors, by section point and fibre
   std::array<V, kPoints> sine_, shear_;
-  std::array<V, kPlaces> length_, stress_;
+  std::array<V, kPlaces> strain_, stress_;
   std::array<V, 4> unit_;  ///< 1 / length at the places across
 };
 

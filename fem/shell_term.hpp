@@ -81,7 +81,7 @@ struct Rows {
 struct NoTables {};
 
 template <int N, int A, bool kRates>
-class ShellTerm final : public Shell {
+class ShellTerm : public Shell {
  public:
   ShellTerm(const Mesh& mesh, const Fabric& fabric, const FemOptions& options)
       : mesh_(mesh),
@@ -228,14 +228,7 @@ class ShellTerm final : public Shell {
         shell_forces<N, A, false>(g, material_, law, viscosity, at, along, f, m);
       }
       for (size_t k = 0; k < kStrainSlots; ++k) store(viscosity.strain[k], before + k * stride);
-      if (block.in_row) {
-        if (block.used < kLanes) clear_idle(block, f), clear_idle(block, m);
-        force.add_in_row(block, f);
-        moment.add_in_row(block, m);
-      } else {
-        force.add_anywhere(block, f);
-        moment.add_anywhere(block, m);
-      }
+      add_forces(block, f, m, force, moment);
     }
   }
 
@@ -278,7 +271,20 @@ class ShellTerm final : public Shell {
     return (kStrainSlots + (kRates ? kLawSlots : 0)) * slot_stride();
   }
 
- private:
+ protected:
+  /// Adds what the elements of a block do to its nodes.
+  static void add_forces(const Block& block, Corners<Lanes>& f, Corners<Lanes>& m, const Rows<double>& force,
+                         const Rows<double>& moment) {
+    if (block.in_row) {
+      if (block.used < kLanes) clear_idle(block, f), clear_idle(block, m);
+      force.add_in_row(block, f);
+      moment.add_in_row(block, m);
+    } else {
+      force.add_anywhere(block, f);
+      moment.add_anywhere(block, m);
+    }
+  }
+
   /// State::history has slots of one strain per element: mid-thickness strains of both fibres at the step
   /// before, by point across; then, with rates, the lagged strains of the law's slots.
   static constexpr size_t kStrainSlots = 2 * A;

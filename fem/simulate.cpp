@@ -116,6 +116,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   const RigDrive drive{request.schedule, model.scene().options.time_scaling};
   RunResult result;
   RunReport& report = result.report;
+  report.parts = model.report_parts();
   State& state = result.state;
   state = first_state(model, request);
   const std::int64_t first_step = state.step, frames = request.observe ? request.frames : 0;

@@ -137,6 +137,7 @@ double largest_eigenvalue(Tangent tangent) {
 double stable_step(const Model& model, State& state, StepScratch& scratch) {
   const Shell& shell = model.shell();
   NodalStiffness &others = scratch.others, &sum = scratch.sum;
+  if (state.lightness.empty()) state.lightness.assign(padded(model.node_count()), 1.0);
   others.clear();
   for (const auto& term : model.terms()) {
     if (term.get() != &shell) term->add_tangent(state, others);
@@ -166,6 +167,8 @@ double true_stable_step(const Model& model, const State& state) {
   undamped.options.bulk_viscosity = 0;
   if (undamped.rig)
     undamped.rig->actuator_stiffness = 0;  // no term; the longer step would be too long for it
+  undamped.options.precision =
+      Precision::double_lanes;  // differences of forces, over less than floats tell apart
   const Model elastic(std::move(undamped));
   double rate = 0;  // 2 over the step
   for (int round = 0; round < kDashpotRounds; ++round)

@@ -67,7 +67,7 @@ struct State {
   std::array<VectorField, 2> edges;
   std::vector<PadState> pads;  ///< empty without a rig
   /// How the bounds of elements were spread over nodes when the step was last chosen [padded]: see
-  /// CornerShares.
+  /// CornerShares. Empty where one step is chosen for good.
   std::vector<double> lightness;
   std::array<double, kBooks> work{};  ///< done on the moving masses since the start [J]
   RunRecord record;                   ///< not part of the hash

@@ -1,5 +1,7 @@
 #include "fem/throughput.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -88,6 +90,34 @@ double step_bytes(const Model& model) {
   vectors += 4 + 3;                          // drift: x, v, d, w; x, d, w
   const double history = 2 * double(model.shell().history_count());  // read and written
   return sizeof(double) * (3 * vectors * model.node_count() + history) / model.scene().mesh.element_count();
+}
+
+namespace {
+
+/// Allocated and not freed.
+std::size_t heap_bytes() {
+#if defined(__GLIBC__) && __GLIBC_PREREQ(2, 33)
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+#else
+  return 0;
+#endif
+}
+
+}  // namespace
+
+Footprint measure_footprint(const Scene& scene) {
+  Footprint bytes;
+  for (int round = 0; round < 2; ++round) {
+    const std::size_t before = heap_bytes();
+    const Model model(scene);
+    const std::size_t with_model = heap_bytes();
+    const State state = model.flat_state(0);
+    const std::size_t with_state = heap_bytes();
+    const Workspace work(model);
+    bytes = {with_model - before, with_state - with_model, heap_bytes() - with_state};
+  }
+  return bytes;
 }
 
 double fma_peak() {

@@ -1,6 +1,7 @@
 // How fast the machine and the time step are: figures for benchmarks, one core.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "fem/simulate.hpp"
@@ -21,6 +22,16 @@ int kernel_flops(int section_points, int fibre_points);
 /// Bytes of node and element arrays that a step reads and writes, per element; what stays in caches counts
 /// too.
 double step_bytes(const Model& model);
+
+/// Bytes that a scene takes, as the C library's allocator books them, its own headers included; 0 where it
+/// does not tell (other than glibc, sanitizers).
+struct Footprint {
+  std::size_t model = 0;      ///< shared by all candidates: mesh, tables, masses, what terms keep
+  std::size_t state = 0;      ///< per candidate
+  std::size_t workspace = 0;  ///< per candidate
+};
+/// Builds the scene twice: what the allocator keeps for later is there from the first time on.
+Footprint measure_footprint(const Scene& scene);
 
 /// Throughput of whole time steps.
 struct Throughput {

@@ -10,10 +10,11 @@ namespace drapeplan {
 
 /// Of stable_step().
 struct StepScratch {
+  StepScratch() = default;  ///< of a run that never chooses its step anew
   explicit StepScratch(const Model& model);
 
-  NodalStiffness others, sum;    ///< of all terms but the ply; of all
-  std::vector<double> sections;  ///< see Shell::look_at_sections
+  NodalStiffness others{0}, sum{0};  ///< of all terms but the ply; of all
+  std::vector<double> sections;      ///< see Shell::look_at_sections
 };
 
 inline constexpr size_t kMostEntries = 8;  ///< of forces: a scene has one or two per term
@@ -26,9 +27,9 @@ struct Workspace {
   std::vector<size_t> turning;               ///< entries with moments, but for the shell's
   std::array<double, kMostEntries> power{};  ///< of entries on free nodes [W]
   double damping = 0;                        ///< power that mass damping takes from free nodes [W]
-  VectorField mean_v, mean_w;                ///< means of the half-step velocities of guided nodes
+  VectorField mean_v, mean_w;                ///< means of the half-step velocities of guided nodes, if any
   std::vector<size_t> guided;                ///< first nodes of lanes where the mean velocities are not zero
-  std::vector<char> has_tied;                ///< by lanes of nodes: some belong to a pad
+  std::vector<char> has_tied;                ///< by lanes of nodes: some belong to a pad; empty without pads
   /// Of all entries, and of added mass; where has_tied, or everywhere with selective scaling.
   VectorField force, moment;
   double added_power = 0;  ///< of added mass on free nodes [W]

@@ -348,21 +348,4 @@ double Mold::normal_curvature(double x, double y, const Eigen::Vector2d& directi
   return second_form / first_form;
 }
 
-CurvatureRange gaussian_curvature_range(const Mold& mold, int n) {
-  if (n < 2) throw std::invalid_argument("gaussian_curvature_range: n must be >= 2");
-  CurvatureRange range{kNaN, kNaN};  // fmin and fmax skip places where the mold is not defined
-  const Extent& extent = mold.extent();
-  const Eigen::Vector2d size = extent.upper - extent.lower;
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      const double x = extent.lower.x() + size.x() * i / (n - 1);
-      const double y = extent.lower.y() + size.y() * j / (n - 1);
-      const double curvature = mold.gaussian_curvature(x, y);
-      range.smallest = std::fmin(range.smallest, curvature);
-      range.largest = std::fmax(range.largest, curvature);
-    }
-  }
-  return range;
-}
-
 }  // namespace drapeplan

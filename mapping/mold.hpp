@@ -91,10 +91,4 @@ class Mold {
   Eigen::MatrixXd dense_;  ///< polynomial only: coefficient of x^i y^j at (i, j)
 };
 
-/// Smallest and largest Gaussian curvature on an n-by-n grid over the extent [1/m^2].
-struct CurvatureRange {
-  double smallest = 0, largest = 0;
-};
-CurvatureRange gaussian_curvature_range(const Mold& mold, int n = 201);
-
 }  // namespace drapeplan

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace drapeplan {
 namespace {
@@ -50,6 +51,29 @@ double signed_area(const Polygon& polygon) {
 Polygon counter_clockwise(Polygon polygon) {
   if (signed_area(polygon) < 0) std::reverse(polygon.begin() + 1, polygon.end());
   return polygon;
+}
+
+// Monotone chain (A. M. Andrew, 1979): the lower chain from left to right, then the upper one back.
+Polygon convex_hull(std::vector<Eigen::Vector2d> points) {
+  if (points.empty()) return {};
+  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
+  });
+  const auto turns_left = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
+    return (b.x() - a.x()) * (c.y() - a.y()) > (b.y() - a.y()) * (c.x() - a.x());
+  };
+  Polygon hull;
+  for (int chain = 0; chain < 2; ++chain) {
+    const size_t first = hull.size();
+    for (const Eigen::Vector2d& point : points) {
+      while (hull.size() >= first + 2 && !turns_left(hull[hull.size() - 2], hull.back(), point))
+        hull.pop_back();
+      hull.push_back(point);
+    }
+    hull.pop_back();  // the first point of the other chain
+    std::reverse(points.begin(), points.end());
+  }
+  return hull;
 }
 
 Eigen::AlignedBox2d bounding_box(const Polygon& polygon) {

@@ -17,6 +17,10 @@ double signed_area(const Polygon& polygon);
 /// The same polygon with its corners counter-clockwise, from the same first corner.
 Polygon counter_clockwise(Polygon polygon);
 
+/// Smallest convex polygon around the points, counter-clockwise; points on its edges are left out. Of less
+/// than two different points: nothing.
+Polygon convex_hull(std::vector<Eigen::Vector2d> points);
+
 /// Smallest upright rectangle around the corners.
 Eigen::AlignedBox2d bounding_box(const Polygon& polygon);
 

@@ -179,6 +179,8 @@ void visit_fem(FieldVisitor& v, FemOptions& f) {
   v.field({"fibre_points", &f.fibre_points,
            "Across each fibre at mid-thickness; with 1 only hourglass control keeps opposite edges alike",
            Dimension::none, from(1, 2)});
+  v.field({"precision", choice(f.precision, {"double", "single"}),
+           "Of the shell's forces; positions, sums of forces, contact and books are in double"});
   v.field({"mass_scaling", &f.mass_scaling, "Factor on the mass; gravity acts on the unscaled mass",
            Dimension::none, from(1, 1e6)});
   v.field({"selective_scaling", &f.selective_scaling,

@@ -17,12 +17,25 @@ using Eigen::Vector2d;
 
 constexpr double kStill = 1e-6;  // a stroke shorter than this is none [m]
 
-/// Range of one axis and the length it is drawn with.
+/// Range of one axis and the length it is drawn with. On a logarithmic axis range and steps are of the
+/// decimal logarithm.
 struct Axis {
   double from = 0, to = 1, step = 0.2;
   double start = 0, length = 1;  ///< [px]; length < 0: upwards
+  bool logarithmic = false;
 
-  [[nodiscard]] double at(double value) const { return start + length * (value - from) / (to - from); }
+  /// Place of a value, which is > 0 on a logarithmic axis [px].
+  [[nodiscard]] double at(double value) const { return along(logarithmic ? std::log10(value) : value); }
+  /// Place of a multiple of the step [px].
+  [[nodiscard]] double along(double tick) const { return start + length * (tick - from) / (to - from); }
+  [[nodiscard]] int ticks() const { return int(std::lround((to - from) / step)); }
+  [[nodiscard]] double tick(int k) const { return from + k * step; }
+  [[nodiscard]] std::string label(int k) const {
+    if (!logarithmic) return fixed(tick(k), decimals_of(step));
+    const double value = std::pow(10.0, tick(k));
+    return fixed(value, std::max(0, int(std::ceil(-tick(k) - 1e-9))) +
+                            (std::abs(std::remainder(tick(k), 1)) > 0.01 ? 1 : 0));
+  }
 };
 
 /// Round limits around the values; starts at zero if that costs less than half of the axis.
@@ -37,52 +50,106 @@ Axis round_axis(double smallest, double largest, double start, double length) {
   return axis;
 }
 
+/// Whole decades around the values, which are > 0; halves of decades if they span less than one and a half.
+Axis decades(double smallest, double largest, double start, double length) {
+  if (!(smallest <= largest) || !(smallest > 0)) smallest = 0.1, largest = 1;
+  const double low = std::log10(smallest), high = std::log10(largest);
+  const double step = high - low < 1.5 ? 0.5 : high - low < 6 ? 1 : 2;
+  Axis axis{
+      std::floor(low / step + 1e-9) * step, std::ceil(high / step - 1e-9) * step, step, start, length, true};
+  if (!(axis.to > axis.from)) axis.to = axis.from + step;
+  return axis;
+}
+
 void draw_axes(Svg& svg, const Axis& x, const Axis& y, const std::string& x_label,
                const std::string& y_label) {
   const Svg::TextStyle tick{.size = 11, .anchor = Svg::Anchor::middle, .colour = ink::kSoft};
   Svg::TextStyle left = tick;
   left.anchor = Svg::Anchor::end;
-  const int x_steps = int(std::lround((x.to - x.from) / x.step)),
-            y_steps = int(std::lround((y.to - y.from) / y.step));
-  for (int k = 0; k <= y_steps; ++k) {
-    const double value = y.from + k * y.step;
-    svg.line({x.at(x.from), y.at(value)}, {x.at(x.to), y.at(value)}, {.stroke = ink::kGrid});
-    svg.text({x.at(x.from) - 8, y.at(value) + 4}, fixed(value, decimals_of(y.step)), left);
+  const double x_end = x.start + x.length;
+  for (int k = 0; k <= y.ticks(); ++k) {
+    const double place = y.along(y.tick(k));
+    svg.line({x.start, place}, {x_end, place}, {.stroke = ink::kGrid});
+    svg.text({x.start - 8, place + 4}, y.label(k), left);
   }
-  for (int k = 0; k <= x_steps; ++k) {
-    const double value = x.from + k * x.step;
-    svg.line({x.at(value), y.start}, {x.at(value), y.start + 4}, {.stroke = ink::kSoft});
-    svg.text({x.at(value), y.start + 18}, fixed(value, decimals_of(x.step)), tick);
+  for (int k = 0; k <= x.ticks(); ++k) {
+    const double place = x.along(x.tick(k));
+    svg.line({place, y.start}, {place, y.start + 4}, {.stroke = ink::kSoft});
+    svg.text({place, y.start + 18}, x.label(k), tick);
   }
-  svg.line({x.at(x.from), y.start}, {x.at(x.to), y.start}, {.stroke = ink::kSoft});
-  svg.text({x.at(x.to), y.start + 36}, x_label,
-           {.size = 12, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
+  svg.line({x.start, y.start}, {x_end, y.start}, {.stroke = ink::kSoft});
+  svg.text({x_end, y.start + 36}, x_label, {.size = 12, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
   svg.text({x.start - 44, y.start + y.length - 12}, y_label, {.size = 12, .colour = ink::kSoft});
 }
 
-/// Hues that stay apart for colour-blind readers (Okabe and Ito, 2008); many series take the sequential
-/// colours.
-std::string series_colour(size_t k, size_t count) {
-  static constexpr std::array kFew{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
-  return count <= kFew.size() ? kFew[k] : sequential_colour(0.25 + 0.75 * double(k) / double(count - 1));
+/// Hues that stay apart for colour-blind readers (Okabe and Ito, 2008; then P. Tol's muted scheme); many
+/// series without a list of names beside the chart take the sequential colours.
+std::string series_colour(const Chart& chart, size_t number) {
+  static constexpr std::array kHues{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9",
+                                    "#332288", "#882255", "#999933", "#117733", "#44aa99", "#5b6775"};
+  constexpr size_t kFew = 6;
+  const size_t count = chart.series.size();
+  if (chart.side_legend || count <= kFew) return kHues[number % kHues.size()];
+  return sequential_colour(0.25 + 0.75 * double(number) / double(count - 1));
 }
 
-std::vector<Vector2d> finite_points(const ChartSeries& series) {
+/// The points that can be drawn: finite, and > 0 along logarithmic axes.
+std::vector<Vector2d> drawn_points(const Chart& chart, const ChartSeries& series) {
   std::vector<Vector2d> points;
   for (const Vector2d& p : series.points) {
-    if (!p.allFinite()) continue;
+    if (!p.allFinite() || (chart.log_x && !(p.x() > 0)) || (chart.log_y && !(p.y() > 0))) continue;
     if (series.steps && !points.empty()) points.emplace_back(p.x(), points.back().y());
     points.push_back(p);
   }
   return points;
 }
 
-void draw_series(Svg& svg, const Axis& x, const Axis& y, const ChartSeries& series,
-                 const std::string& colour) {
+void draw_series(Svg& svg, const Axis& x, const Axis& y, const Chart& chart, size_t number) {
+  const ChartSeries& series = chart.series[number];
+  const std::string colour = series_colour(chart, number);
   std::vector<Vector2d> places;
-  for (const Vector2d& p : finite_points(series)) places.emplace_back(x.at(p.x()), y.at(p.y()));
-  if (!series.dots) return svg.polyline(places, {.stroke = colour, .width = 1.8});
-  for (const Vector2d& place : places) svg.circle(place, 2.2, {.fill = colour, .opacity = 0.6});
+  for (const Vector2d& p : drawn_points(chart, series)) places.emplace_back(x.at(p.x()), y.at(p.y()));
+  if (!series.dots) svg.polyline(places, {.stroke = colour, .width = 1.8});
+  if (series.rings) {
+    for (const Vector2d& place : places) svg.circle(place, 6, {.stroke = colour, .width = 1.6});
+  } else if (series.dots || series.marks) {
+    const double radius = series.marks ? 3 : 2.2;
+    for (const Vector2d& place : places)
+      svg.circle(place, radius, {.fill = colour, .opacity = series.marks ? 1 : 0.6});
+  }
+}
+
+/// From the right; what would cover the label of y goes a row up.
+void draw_top_legend(Svg& svg, const Chart& chart, double right, double left) {
+  double legend = right, base = 48;
+  for (size_t k = chart.series.size(); k-- > 0;) {
+    const ChartSeries& series = chart.series[k];
+    if (series.name.empty()) continue;
+    constexpr double kLetter = 5.8, kRow = 18;  // mean width of a letter at this size; height of a row
+    const double wide = kLetter * double(series.name.size()) + 6;
+    if (legend - wide < left) legend = right, base -= kRow;
+    svg.text({legend, base}, series.name, {.size = 12, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
+    svg.circle({legend - wide, base - 4}, 4, {.fill = series_colour(chart, k)});
+    legend -= wide + 18;
+  }
+}
+
+/// One name per row, downwards.
+void draw_side_legend(Svg& svg, const Chart& chart, const Vector2d& corner) {
+  constexpr double kRow = 20;
+  double base = corner.y();
+  for (size_t k = 0; k < chart.series.size(); ++k) {
+    const ChartSeries& series = chart.series[k];
+    if (series.name.empty()) continue;
+    const std::string colour = series_colour(chart, k);
+    if (series.rings) {
+      svg.circle({corner.x(), base - 4}, 5, {.stroke = colour, .width = 1.6});
+    } else {
+      svg.circle({corner.x(), base - 4}, 4, {.fill = colour});
+    }
+    svg.text({corner.x() + 12, base}, series.name, {.size = 12, .colour = ink::kSoft});
+    base += kRow;
+  }
 }
 
 /// What a gripper does, in the schedule's time.
@@ -206,35 +273,28 @@ void draw_grid(Svg& svg, const std::vector<Row>& rows, const RigOptions& rig, co
 }  // namespace
 
 std::string line_chart(const Chart& chart) {
-  constexpr double kLeft = 62, kRight = 24, kTop = 66, kBottom = 52;
+  constexpr double kLeft = 62, kRight = 24, kSideLegend = 190, kTop = 66, kBottom = 52;
   const double infinity = std::numeric_limits<double>::infinity();
   Vector2d smallest(infinity, infinity), largest = -smallest;
   for (const ChartSeries& series : chart.series) {
-    for (const Vector2d& p : finite_points(series)) {
+    for (const Vector2d& p : drawn_points(chart, series)) {
       smallest = smallest.cwiseMin(p);
       largest = largest.cwiseMax(p);
     }
   }
-  const Axis x = round_axis(smallest.x(), largest.x(), kLeft, chart.width - kLeft - kRight);
-  const Axis y =
-      round_axis(smallest.y(), largest.y(), chart.height - kBottom, -(chart.height - kTop - kBottom));
+  const auto axis_of = [](bool logarithmic) { return logarithmic ? decades : round_axis; };
+  const double right = chart.side_legend ? kSideLegend : kRight;
+  const Axis x = axis_of(chart.log_x)(smallest.x(), largest.x(), kLeft, chart.width - kLeft - right);
+  const Axis y = axis_of(chart.log_y)(smallest.y(), largest.y(), chart.height - kBottom,
+                                      -(chart.height - kTop - kBottom));
   Svg svg(chart.width, chart.height, chart.title);
   svg.text({18, 26}, chart.title, {.size = 15, .bold = true});
   draw_axes(svg, x, y, chart.x_label, chart.y_label);
-  for (size_t k = 0; k < chart.series.size(); ++k) {
-    draw_series(svg, x, y, chart.series[k], series_colour(k, chart.series.size()));
-  }
-  // From the right; what would cover the label of y goes a row up.
-  double legend = chart.width - kRight, base = 48;
-  for (size_t k = chart.series.size(); k-- > 0;) {
-    const ChartSeries& series = chart.series[k];
-    if (series.name.empty()) continue;
-    constexpr double kLetter = 5.8, kRow = 18;  // mean width of a letter at this size; height of a row
-    const double wide = kLetter * double(series.name.size()) + 6;
-    if (legend - wide < 2 * kLeft) legend = chart.width - kRight, base -= kRow;
-    svg.text({legend, base}, series.name, {.size = 12, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
-    svg.circle({legend - wide, base - 4}, 4, {.fill = series_colour(k, chart.series.size())});
-    legend -= wide + 18;
+  for (size_t k = 0; k < chart.series.size(); ++k) draw_series(svg, x, y, chart, k);
+  if (chart.side_legend) {
+    draw_side_legend(svg, chart, {chart.width - right + 24, kTop + 4});
+  } else {
+    draw_top_legend(svg, chart, chart.width - kRight, 2 * kLeft);
   }
   return svg.finish();
 }

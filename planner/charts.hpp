@@ -16,12 +16,16 @@ struct ChartSeries {
       points;          ///< in the chart's units; points that are not finite (failed runs) are left out
   bool dots = false;   ///< single points instead of a line
   bool steps = false;  ///< the value holds until the next point
+  bool marks = false;  ///< every point of the line is marked
+  bool rings = false;  ///< with a ring
 };
 
 struct Chart {
   std::string title, x_label, y_label;
   std::vector<ChartSeries> series;
-  double width = 640, height = 320;  ///< [px]
+  double width = 640, height = 320;   ///< [px]
+  bool log_x = false, log_y = false;  ///< points that are not > 0 are left out then
+  bool side_legend = false;           ///< names in a column on the right, each series with a hue of its own
 };
 
 /// SVG of a chart; its axes hold all points, and y = 0 if the values come close to it.

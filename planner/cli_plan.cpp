@@ -71,6 +71,7 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
              {"meaning", explain_reach(problem.reach_problem(), problem.reach())}};
   return {
       {"case", problem.value().name},
+      {"terms", problem.model(kReport).term_names()},
       {"reach", reach},
       {"map",
        {{"max_shear_deg", problem.mapping().max_shear_deg},
@@ -102,10 +103,12 @@ PlannedCase plan_case(Case value, const PlanVerbOptions& options, const std::fil
   const bool talk = !options.common.quiet;
   const std::string name = value.name;
   const DrapeProblem problem(std::move(value));
+  for (const std::string& fidelity : plan_fidelities(problem.value()))
+    static_cast<void>(problem.model(fidelity));  // what cannot be built is found before anything is written
   if (talk) {
-    std::cerr << name << ": mapped, shear at most " << problem.mapping().max_shear_deg << " deg\n  terms:";
-    for (const std::string& term : problem.model(kReport).term_names()) std::cerr << " [" << term << "]";
-    std::cerr << "\n  reach: " << explain_reach(problem.reach_problem(), problem.reach()) << '\n';
+    std::cerr << name << ": mapped, shear at most " << problem.mapping().max_shear_deg
+              << " deg\n  terms: " << terms_line(problem.model(kReport))
+              << "\n  reach: " << explain_reach(problem.reach_problem(), problem.reach()) << '\n';
   }
   print_warnings(map_warnings(problem.value(), problem.mapping()), options.common);
   std::filesystem::create_directories(folder);

@@ -65,18 +65,27 @@ void finish_run(const SimulateOptions& options, const Model& model, const RunRes
 }
 
 std::string summary(const RunReport& report, int nodes) {
-  char text[700];
-  std::snprintf(
-      text, sizeof text,
-      "%s: %lld steps of %.3g us on %d nodes in %.1f s (%.1f million element updates per second)\n"
-      "energy [J]: kinetic %.3g, internal %.4g, external %.4g, friction %.4g, damping %.4g, constraint %.3g, "
-      "hourglass %.3g (at most %.2f %% of internal); books close to %.1e of the largest\nstate hash %s\n",
-      report.message.c_str(), static_cast<long long>(report.steps), 1e6 * report.dt, nodes,
-      report.wall_seconds, 1e-6 * report.element_updates_per_second, report.energy.kinetic,
-      report.energy.internal, report.energy.external, report.energy.friction, report.energy.damping,
-      report.energy.constraint, report.energy.hourglass, 1e2 * report.largest_hourglass_share,
-      report.energy.balance_error, hex(report.state_hash).c_str());
-  return text;
+  char text[300];
+  std::snprintf(text, sizeof text,
+                "%s: %lld steps of %.3g us on %d nodes in %.1f s (%.1f million element updates per "
+                "second)\nenergy [J]:",
+                report.message.c_str(), static_cast<long long>(report.steps), 1e6 * report.dt, nodes,
+                report.wall_seconds, 1e-6 * report.element_updates_per_second);
+  std::string lines = text;
+  for_each_energy(report, [&](const std::string& key, double value, bool ReportParts::*part) {
+    if (key == "largest" || key == "balance_error" || (part != nullptr && !(report.parts.*part))) return;
+    std::snprintf(text, sizeof text, " %s %.4g,", key.c_str(), value);
+    lines += text;
+  });
+  std::snprintf(text, sizeof text,
+                " hourglass at most %.2f %% of internal; books close to %.1e of the largest\nstate hash %s\n",
+                1e2 * report.largest_hourglass_share, report.energy.balance_error,
+                hex(report.state_hash).c_str());
+  return lines + text;
+}
+
+void print_terms(const Model& model, const CommonOptions& options) {
+  if (!options.quiet) std::cerr << "terms: " << terms_line(model) << '\n';
 }
 
 /// Displacements of the named points, of the node nearest to each; displacements and forces of the grips.
@@ -104,6 +113,7 @@ json probes_json(const Case& value, const Model& model, const Snapshot& start, c
 int simulate_free(const Case& value, const SimulateOptions& options) {
   const Model model(scene_of(value, value.fidelities.at(options.fidelity)));
   const PartOfRun part = part_of_run(options, model);
+  print_terms(model, options.common);
   std::vector<Snapshot> frames;
   RunRequest request;
   request.duration = value.duration;
@@ -115,10 +125,13 @@ int simulate_free(const Case& value, const SimulateOptions& options) {
   json result = report_json(run.report);
   finish_run(options, model, run, result);
   result["terms"] = model.term_names();
-  const Snapshot start = take_snapshot(model, model.flat_state(value.start_height), RigDrive{});
-  result["probes"] = probes_json(value, model, start, run.final);
+  json probes = json::object();
+  if (!value.probes.empty() || !value.grips.empty()) {
+    const Snapshot start = take_snapshot(model, model.flat_state(value.start_height), RigDrive{});
+    result["probes"] = probes = probes_json(value, model, start, run.final);
+  }
   std::string text = summary(run.report, model.node_count());
-  for (const auto& [name, probe] : result["probes"].items()) {
+  for (const auto& [name, probe] : probes.items()) {
     const auto u = probe["displacement"];
     char line[200];
     std::snprintf(line, sizeof line, "%s moved by (%.3f, %.3f, %.3f) mm\n", name.c_str(),
@@ -183,6 +196,7 @@ int simulate_drape(Case value, const SimulateOptions& options) {
   const bool files = !options.common.out.empty();
   const Model& model = problem.model(options.fidelity);
   const PartOfRun part = part_of_run(options, model);
+  print_terms(model, options.common);
   const Drape drape = problem.run(*schedule, options.fidelity, files ? options.frames : 0,
                                   {part.from ? &*part.from : nullptr, part.pause});
   json result = report_json(drape.run.report);

@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
@@ -21,12 +20,7 @@ double fold(double x) {
 }  // namespace
 
 CmaEs::CmaEs(const Eigen::VectorXd& x0, const CmaEsOptions& options)
-    : smallest_sigma_(options.smallest_sigma),
-      mean_(x0),
-      sigma_(options.sigma0),
-      bits_(options.seed),
-      best_value_(std::numeric_limits<double>::infinity()),
-      best_x_(x0) {
+    : smallest_sigma_(options.smallest_sigma), mean_(x0), sigma_(options.sigma0), bits_(options.seed) {
   if (x0.size() == 0 || !x0.allFinite())
     throw std::invalid_argument("CmaEs: the start is empty or not finite");
   if (!(options.sigma0 > 0)) throw std::invalid_argument("CmaEs: sigma0 must be positive");
@@ -81,10 +75,6 @@ void CmaEs::tell(const Eigen::VectorXd& values) {
     return;
   }
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return values[a] < values[b]; });
-  if (values[order.front()] < best_value_) {
-    best_value_ = values[order.front()];
-    best_x_ = folded_.col(order.front());
-  }
   order.resize(std::min(order.size(), size_t(parents_)));
   const Eigen::VectorXd old_mean = mean_;
   recombine(order);

@@ -39,8 +39,6 @@ class CmaEs {
   [[nodiscard]] int population() const { return population_; }
   [[nodiscard]] Eigen::VectorXd mean() const;  ///< folded into the box
   [[nodiscard]] double sigma() const { return sigma_; }
-  [[nodiscard]] double best_value() const { return best_value_; }  ///< infinite before the first success
-  [[nodiscard]] const Eigen::VectorXd& best_x() const { return best_x_; }  ///< x0 before the first success
   /// Why there is no point in going on; empty if there is.
   [[nodiscard]] std::string stop_reason() const;
 
@@ -61,9 +59,6 @@ class CmaEs {
   Eigen::VectorXd axes_;
   Eigen::MatrixXd unfolded_, folded_;  ///< the last generation
   std::mt19937_64 bits_;
-
-  double best_value_;
-  Eigen::VectorXd best_x_;
 };
 
 }  // namespace drapeplan

@@ -26,10 +26,8 @@ bool on_edge(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& uv, Edge edg
   return false;
 }
 
-/// Joints where their pads touch the mold, at the mapped or at the reachable places [m].
-std::vector<Eigen::Vector3d> touching_joints(const Case& value, const std::vector<Eigen::Vector3d>& targets,
-                                             const ReachResult& reach) {
-  if (value.schedule.aim == Aim::reachable) return reach.joints;
+/// Joints where their pads touch the mold at the mapped places [m].
+std::vector<Eigen::Vector3d> touching_joints(const Case& value, const std::vector<Eigen::Vector3d>& targets) {
   const double above = 0.5 * value.material.thickness + value.grippers->joint_offset;
   std::vector<Eigen::Vector3d> joints;
   for (const Eigen::Vector3d& target : targets) {
@@ -46,8 +44,8 @@ Mesh mesh_of(const Case& value, double mesh_size) {
   std::vector<double> u,
       v;  // lines through the pads, so that these cover the same piece of ply on every mesh
   if (value.grippers) {
-    u = column_places(*value.grippers);
-    v = row_places(*value.grippers);
+    u = column_places(*value.grippers, mesh_size);
+    v = row_places(*value.grippers, mesh_size);
   }
   if (!value.ply.outline.empty()) return outline_mesh(value.ply.outline, mesh_size, u, v);
   return rectangle_mesh(value.ply.width, value.ply.height, mesh_size, u, v);
@@ -111,12 +109,15 @@ DrapeProblem::DrapeProblem(Case value)
     : case_(std::move(value)),
       map_(map_case(case_)),
       reach_problem_(reach_problem_of(case_, map_.targets)),
-      reach_(solve_reach(reach_problem_, kReachStarts, case_.optimise.seed)) {
-  if (case_.schedule.aim == Aim::reachable && !reach_.converged) {
-    throw std::domain_error("the schedule aims at reachable places, but there are none: " + reach_.status);
+      reach_(std::make_unique<Lazy<ReachResult>>()) {
+  for (const auto& entry : case_.fidelities) models_[entry.first] = std::make_unique<Lazy<Model>>();
+  const bool reachable = case_.schedule.aim == Aim::reachable;
+  if (reachable && !reach().converged) {
+    throw std::domain_error("the schedule aims at reachable places, but there are none: " + reach().status);
   }
   frame_.rig = *case_.grippers;
-  const std::vector<Eigen::Vector3d> joints = touching_joints(case_, map_.targets, reach_);
+  const std::vector<Eigen::Vector3d> joints =
+      reachable ? reach().joints : touching_joints(case_, map_.targets);
   for (const Eigen::Vector3d& joint : joints) frame_.target_z.push_back(joint.z());
   for (int g = 0; frame_.rig.driven == Driven::xyz && g < frame_.rig.count(); ++g) {
     frame_.start_xy.push_back(start_of_joint(case_, g));
@@ -125,14 +126,19 @@ DrapeProblem::DrapeProblem(Case value)
   frame_.options = case_.schedule;
   frame_.shortest_stroke = case_.optimise.shortest_stroke;
   frame_.longest_sequence = case_.optimise.longest_sequence;
-  for (const auto& [name, options] : case_.fidelities) {
-    models_[name] = std::make_unique<const Model>(scene_of(case_, options));
-  }
+}
+
+const ReachResult& DrapeProblem::reach() const {
+  return reach_->get([this] { return solve_reach(reach_problem_, kReachStarts, case_.optimise.seed); });
+}
+
+const Model& DrapeProblem::model(const std::string& fidelity) const {
+  return models_.at(fidelity)->get([&] { return Model(scene_of(case_, case_.fidelities.at(fidelity))); });
 }
 
 Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, int frames,
                         RunPart part) const {
-  const Model& model = *models_.at(fidelity);
+  const Model& model = this->model(fidelity);
   Drape drape;
   RunRequest request;
   request.schedule = &schedule;

@@ -1,9 +1,10 @@
-// A case made ready to be simulated: mapping, reach, models of all fidelities, and one evaluation as a pure
-// function.
+// A case made ready to be simulated: mapping, and one evaluation as a pure function. Models of fidelities and
+// the reach floor are made when they are first asked for.
 #pragma once
 
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,32 +42,51 @@ struct RunPart {
   double pause = 0;
 };
 
-/// Const after construction; shared by all threads.
+/// Shared by all threads: whoever asks first for a model or the reach floor makes it, the others wait for it.
 class DrapeProblem {
  public:
-  /// Maps the ply, solves the reach problem and builds the models.
+  /// Maps the ply; where the schedule aims at reachable places, also solves the reach problem.
   /// @param value  needs mold, mapping and grippers.
-  /// @throws std::domain_error if the ply cannot be mapped, std::invalid_argument if a model cannot be built.
+  /// @throws std::domain_error if the ply cannot be mapped, or not be reached where the schedule needs it.
   explicit DrapeProblem(Case value);
 
   [[nodiscard]] const Case& value() const { return case_; }
   [[nodiscard]] const MapResult& mapping() const { return map_; }
   [[nodiscard]] const ReachProblem& reach_problem() const { return reach_problem_; }
-  [[nodiscard]] const ReachResult& reach() const { return reach_; }
+  [[nodiscard]] const ReachResult& reach() const;
   [[nodiscard]] const SequenceFrame& frame() const { return frame_; }
-  [[nodiscard]] const Model& model(const std::string& fidelity) const { return *models_.at(fidelity); }
+  /// @throws std::out_of_range if the case has no such fidelity, std::invalid_argument if its model cannot be
+  /// built.
+  [[nodiscard]] const Model& model(const std::string& fidelity) const;
 
-  /// Runs a schedule. Never throws for a schedule that fits the rig: a failed run is an invalid score.
+  /// Runs a schedule. Once the fidelity's model is built it never throws for a schedule that fits the rig: a
+  /// failed run is an invalid score.
   [[nodiscard]] Drape run(const Schedule& schedule, const std::string& fidelity, int frames = 0,
                           RunPart part = {}) const;
 
  private:
+  /// Made by whoever asks first.
+  template <class T>
+  class Lazy {
+   public:
+    template <class Make>
+    const T& get(const Make& make) {
+      const std::scoped_lock lock(mutex_);
+      if (!value_) value_ = std::make_unique<const T>(make());
+      return *value_;
+    }
+
+   private:
+    std::mutex mutex_;
+    std::unique_ptr<const T> value_;
+  };
+
   Case case_;
   MapResult map_;
   ReachProblem reach_problem_;
-  ReachResult reach_;
   SequenceFrame frame_;
-  std::map<std::string, std::unique_ptr<const Model>> models_;
+  std::unique_ptr<Lazy<ReachResult>> reach_;
+  std::map<std::string, std::unique_ptr<Lazy<Model>>> models_;
 };
 
 }  // namespace drapeplan

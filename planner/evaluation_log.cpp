@@ -54,11 +54,15 @@ Evaluation from_json(const json& j) {
   for_each_part(e.outcome.score, [&](const char* key, double& v) { v = number_or(score.at(key), kLost); });
   e.outcome.score.valid = score.at("valid").get<bool>();
   if (!e.outcome.score.valid) e.outcome.score.reason = score.at("reason").get<std::string>();
-  for_each_figure(e.outcome.report,
-                  [&](const char* key, double& v) { v = number_or(report.at(key), kLost); });
-  const json& energy = report.at("energy");
-  for_each_energy(e.outcome.report.energy,
-                  [&](const char* key, double& v) { v = number_or(energy.at(key), kLost); });
+  const auto read_from = [&](const json& object) {
+    return [&](const char* key, double& v, bool ReportParts::*part) {
+      const bool absent = part != nullptr && !object.contains(key);
+      if (absent) e.outcome.report.parts.*part = false;
+      v = absent ? 0 : number_or(object.at(key), kLost);
+    };
+  };
+  for_each_figure(e.outcome.report, read_from(report));
+  for_each_energy(e.outcome.report, read_from(report.at("energy")));
   e.outcome.report.status = report.at("status") == "done" ? RunStatus::done : RunStatus::diverged;
   e.outcome.report.message = report.at("message").get<std::string>();
   e.outcome.report.steps = report.at("steps").get<std::int64_t>();

@@ -41,6 +41,8 @@ std::vector<std::string> map_warnings(const Case& value, const MapResult& map) {
   constexpr double kMisplaced = 0.010;  // [m]; tilt and joint offset account for less
   std::vector<std::string> warnings;
   char text[300];
+  if (!map.net.converged)
+    warnings.emplace_back("the mapping of a cell has not converged: its shear is not exact");
   const Extent& extent = value.mold->extent();
   double beyond = 0;
   for (const Eigen::Vector3d& p : map.boundary) {

@@ -1,6 +1,5 @@
 #include "planner/plan.hpp"
 
-#include <array>
 #include <chrono>
 #include <map>
 #include <mutex>
@@ -44,6 +43,13 @@ std::uint64_t case_hash(const Case& value) {
   return hash.value();
 }
 
+std::array<std::string, 3> plan_fidelities(const Case& value) {
+  const auto fidelity_or_report = [&value](const char* name) {
+    return value.fidelities.count(name) > 0 ? std::string(name) : std::string(kReport);
+  };
+  return {fidelity_or_report("screen"), fidelity_or_report("search"), kReport};
+}
+
 PlanResult plan(const DrapeProblem& problem, const PlanOptions& options,
                 const std::function<void(const Progress&)>& progress) {
   const auto clock = std::chrono::steady_clock::now();
@@ -64,11 +70,9 @@ PlanResult plan(const DrapeProblem& problem, const PlanOptions& options,
   StagedOptions staged;
   staged.optimise = problem.value().optimise;
   staged.threads = options.threads;
-  const auto fidelity_or_report = [&](const char* name) {
-    return problem.value().fidelities.count(name) > 0 ? std::string(name) : std::string(kReport);
-  };
-  staged.wave_fidelity = fidelity_or_report("screen");
-  staged.gripper_fidelity = fidelity_or_report("search");
+  const auto fidelities = plan_fidelities(problem.value());
+  staged.wave_fidelity = fidelities[0];
+  staged.gripper_fidelity = fidelities[1];
 
   PlanResult result;
   result.search =

@@ -1,6 +1,7 @@
 // The main job: map, check reach, evaluate the baselines, optimise, re-evaluate at the reporting fidelity.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -23,6 +24,9 @@ struct PlanResult {
   Drape uniform, wave, best;  ///< at the reporting fidelity, with frames
   double wall_seconds = 0;
 };
+
+/// Fidelities that a plan of the case runs: of the wave's search, of the grippers' search, of reports.
+std::array<std::string, 3> plan_fidelities(const Case& value);
 
 /// Searches for the best schedule of the problem. The result depends on the case only: not on threads, nor on
 /// what was resumed. Evaluations are appended to `out`/evaluations.jsonl as they end.

@@ -156,7 +156,6 @@ ReachCauses find_causes(const ReachProblem& problem, const Places& solution) {
   ReachProblem flush = problem;
   flush.rig.joint_offset = flush.ply_thickness = 0;
   causes.rms_flush = best_of(flush, ReachNlp(flush, ReachGoal::rms), from).value;
-  causes.max_flush = best_of(flush, ReachNlp(flush, ReachGoal::max), from).value;
 
   ReachProblem unfixed = problem;
   unfixed.rig.fixed.reset();
@@ -179,7 +178,7 @@ bool targets_are_reachable(const ReachProblem& problem) {
 ReachResult without_floors(ReachResult result, const std::string& why) {
   result.status = why;
   result.floor_rms = result.floor_max = kNaN;
-  result.causes = {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
+  result.causes = {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
   return result;
 }
 

@@ -26,7 +26,6 @@ struct ReachProblem {
 /// The floor again with one part of the rig changed: it shows what causes the floor.
 struct ReachCauses {
   double rms_flush = 0;     ///< floor_rms with all joints on the mold's surface (offset and thickness 0) [m]
-  double max_flush = 0;     ///< floor_max of the same [m]
   double rms_unfixed = 0;   ///< floor_rms if no joint were fixed in-plane [m]
   double rms_rescaled = 0;  ///< floor_rms if all interlinks had the best common length [m]
   double link_scale = 1;    ///< that length over the spacing

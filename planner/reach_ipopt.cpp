@@ -91,10 +91,9 @@ class Adapter final : public Ipopt::TNLP {
   }
 
   void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number*, const Number*, Index,
-                         const Number*, const Number*, Number, const Ipopt::IpoptData* data,
+                         const Number*, const Number*, Number, const Ipopt::IpoptData*,
                          Ipopt::IpoptCalculatedQuantities*) override {
     outcome_.variables = view(x, n);
-    if (data != nullptr) outcome_.iterations = data->iter_count();
   }
 
  private:

@@ -12,7 +12,6 @@ struct IpoptOutcome {
   bool converged = false;
   std::string status;         ///< in words
   Eigen::VectorXd variables;  ///< the last iterate, whether converged or not
-  int iterations = 0;
 };
 
 /// A local minimum near `start`, with exact gradient, Jacobian and Hessian. Holds ipopt_mutex() all the time.

@@ -29,32 +29,36 @@ void for_each_part(ScoreType& s, const Visit& visit) {
   visit("objective", s.objective);
 }
 
-/// The same for energies.
-template <class EnergiesType, class Visit>
-void for_each_energy(EnergiesType& e, const Visit& visit) {
-  visit("kinetic", e.kinetic);
-  visit("internal", e.internal);
-  visit("external", e.external);
-  visit("friction", e.friction);
-  visit("contact", e.contact);
-  visit("damping", e.damping);
-  visit("constraint", e.constraint);
-  visit("hourglass", e.hourglass);
-  visit("largest", e.largest);
-  visit("balance_error", e.balance_error);
+/// Calls visit(key, field, part) for every energy of a report. `part` points to the member of ReportParts
+/// that says whether the scene has any of it; null: every scene does.
+template <class ReportType, class Visit>
+void for_each_energy(ReportType& r, const Visit& visit) {
+  using Part = bool ReportParts::*;
+  auto& e = r.energy;
+  visit("kinetic", e.kinetic, Part(nullptr));
+  visit("internal", e.internal, Part(nullptr));
+  visit("external", e.external, &ReportParts::external);
+  visit("friction", e.friction, &ReportParts::friction);
+  visit("contact", e.contact, &ReportParts::contact);
+  visit("damping", e.damping, &ReportParts::damping);
+  visit("constraint", e.constraint, &ReportParts::constraint);
+  visit("hourglass", e.hourglass, Part(nullptr));
+  visit("largest", e.largest, Part(nullptr));
+  visit("balance_error", e.balance_error, Part(nullptr));
 }
 
 /// The same for the other doubles of a report.
 template <class ReportType, class Visit>
 void for_each_figure(ReportType& r, const Visit& visit) {
-  visit("dt", r.dt);
-  visit("simulated_time", r.simulated_time);
-  visit("wall_seconds", r.wall_seconds);
-  visit("element_updates_per_second", r.element_updates_per_second);
-  visit("largest_kinetic_ratio", r.largest_kinetic_ratio);
-  visit("largest_hourglass_share", r.largest_hourglass_share);
-  visit("largest_penetration", r.largest_penetration);
-  visit("largest_link_error", r.largest_link_error);
+  using Part = bool ReportParts::*;
+  visit("dt", r.dt, Part(nullptr));
+  visit("simulated_time", r.simulated_time, Part(nullptr));
+  visit("wall_seconds", r.wall_seconds, Part(nullptr));
+  visit("element_updates_per_second", r.element_updates_per_second, Part(nullptr));
+  visit("largest_kinetic_ratio", r.largest_kinetic_ratio, Part(nullptr));
+  visit("largest_hourglass_share", r.largest_hourglass_share, Part(nullptr));
+  visit("largest_penetration", r.largest_penetration, &ReportParts::contact);
+  visit("largest_link_error", r.largest_link_error, &ReportParts::links);
 }
 
 /// The words of RunStatus, in its order.
@@ -82,10 +86,16 @@ inline nlohmann::json score_json(const Score& score) {
   return out;
 }
 
+/// Without the figures of what the scene does not have.
 inline nlohmann::json report_json(const RunReport& report) {
   nlohmann::json out, energy;
-  for_each_figure(report, [&](const char* key, double value) { out[key] = finite(value); });
-  for_each_energy(report.energy, [&](const char* key, double value) { energy[key] = finite(value); });
+  const auto write_to = [&report](nlohmann::json& object) {
+    return [&](const char* key, double value, bool ReportParts::*part) {
+      if (part == nullptr || report.parts.*part) object[key] = finite(value);
+    };
+  };
+  for_each_figure(report, write_to(out));
+  for_each_energy(report, write_to(energy));
   out["energy"] = energy;
   out["status"] = kRunStatus[size_t(report.status)];
   out["message"] = report.message;

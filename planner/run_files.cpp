@@ -80,6 +80,12 @@ std::vector<std::string> notes_of(const DrapeProblem& problem) {
 
 }  // namespace
 
+std::string terms_line(const Model& model) {
+  std::string line;
+  for (const std::string& name : model.term_names()) line += (line.empty() ? "[" : " [") + name + "]";
+  return line;
+}
+
 DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
                        const std::string& title) {
   const Mesh& mesh = problem.model(fidelity).scene().mesh;

@@ -10,6 +10,9 @@
 
 namespace drapeplan {
 
+/// All terms of a model in one line: "[shell, 3 section points] [gravity]".
+std::string terms_line(const Model& model);
+
 /// The panel of one drape for `drape_picture`.
 DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
                        const std::string& title);

@@ -16,7 +16,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the header of the files says LittleEndian");
 
-constexpr std::uint8_t kVtkLine = 3, kVtkQuad = 9;  // cell types of VTK
+constexpr std::uint8_t kVtkQuad = 9;  // a cell type of VTK
 
 /// RFC 4648, with padding.
 std::string base64(const std::vector<unsigned char>& bytes) {
@@ -58,17 +58,15 @@ std::string vectors(const std::string& name, const std::vector<Eigen::Vector3d>&
   return data_array<double>(name, 3, {first, 3 * values.size()});
 }
 
-/// An unstructured grid whose cells all have `Corners` corners and one type.
-template <size_t Corners>
-std::string grid(const std::vector<Eigen::Vector3d>& points,
-                 const std::vector<std::array<int, Corners>>& cells, std::uint8_t type,
+/// An unstructured grid of quadrilaterals.
+std::string grid(const std::vector<Eigen::Vector3d>& points, const std::vector<std::array<int, 4>>& cells,
                  const std::string& point_data, const std::string& cell_data) {
   std::vector<std::int64_t> connectivity, offsets;
   for (const auto& cell : cells) {
     connectivity.insert(connectivity.end(), cell.begin(), cell.end());
     offsets.push_back(std::int64_t(connectivity.size()));
   }
-  const std::vector<std::uint8_t> types(cells.size(), type);
+  const std::vector<std::uint8_t> types(cells.size(), kVtkQuad);
   return "<?xml version=\"1.0\"?>\n"
          "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
          "header_type=\"UInt64\">\n"
@@ -104,7 +102,7 @@ void write_vtu(const std::filesystem::path& file, const Mesh& mesh, const Snapsh
   if (!snapshot.shear.empty()) cell_data += scalars("shear", snapshot.shear);
   if (!snapshot.warp_strain.empty()) cell_data += scalars("warp_strain", snapshot.warp_strain);
   if (!snapshot.weft_strain.empty()) cell_data += scalars("weft_strain", snapshot.weft_strain);
-  write_text(file, grid(snapshot.position, mesh.quads, kVtkQuad, point_data, cell_data));
+  write_text(file, grid(snapshot.position, mesh.quads, point_data, cell_data));
 }
 
 void write_mold_vtu(const std::filesystem::path& file, const Mold& mold, int n) {
@@ -133,21 +131,8 @@ void write_mold_vtu(const std::filesystem::path& file, const Mold& mold, int n) 
       if (std::min({cell[0], cell[1], cell[2], cell[3]}) >= 0) cells.push_back(cell);
     }
   }
-  write_text(file, grid(points, cells, kVtkQuad,
-                        vectors("normal", normals) + scalars("gaussian_curvature", curvature), ""));
-}
-
-void write_grippers_vtu(const std::filesystem::path& file, const Snapshot& snapshot) {
-  const size_t count = snapshot.pad.size();
-  check_size("joint", snapshot.joint.size(), count, false);
-  check_size("actuator_force", snapshot.actuator_force.size(), count, true);
-  std::vector<Eigen::Vector3d> points = snapshot.pad;
-  points.insert(points.end(), snapshot.joint.begin(), snapshot.joint.end());
-  std::vector<std::array<int, 2>> lines;
-  for (size_t g = 0; g < count; ++g) lines.push_back({int(g), int(g + count)});
-  const std::string forces =
-      snapshot.actuator_force.empty() ? "" : scalars("actuator_force", snapshot.actuator_force);
-  write_text(file, grid(points, lines, kVtkLine, "", forces));
+  write_text(file,
+             grid(points, cells, vectors("normal", normals) + scalars("gaussian_curvature", curvature), ""));
 }
 
 void write_pvd(const std::filesystem::path& file, const std::vector<PvdEntry>& entries) {

@@ -23,10 +23,6 @@ void write_vtu(const std::filesystem::path& file, const Mesh& mesh, const Snapsh
 /// corner where the mold is not defined are left out. n >= 2.
 void write_mold_vtu(const std::filesystem::path& file, const Mold& mold, int n = 101);
 
-/// Writes pads and joints as points joined by lines, with `actuator_force` [N] (upwards > 0). Needs a
-/// snapshot with a rig.
-void write_grippers_vtu(const std::filesystem::path& file, const Snapshot& snapshot);
-
 /// One file of a collection; `file` is relative to the collection.
 struct PvdEntry {
   double time = 0;  ///< [s]

@@ -33,6 +33,15 @@ value() {
 }
 # Within a range, without printing it.
 within() { value "$@" >"$work/value"; }
+# lacks FILE POINTER...: none of these is there.
+lacks() {
+  local file=$1 pointer
+  shift
+  for pointer in "$@"; do
+    checks=$((checks + 1))
+    if "$json_value" "$file" "$pointer" >"$work/value" 2>&1; then fail "$file has $pointer: $(cat "$work/value")"; fi
+  done
+}
 
 same() {
   checks=$((checks + 1))

@@ -18,7 +18,7 @@ inline Scene rig_drape(int columns, double spacing, double joint_offset, double 
   rig.spacing = spacing;
   rig.joint_offset = joint_offset;
   scene.rig = rig;
-  scene.mesh = rectangle_mesh(side, side, mesh_size, column_places(rig), row_places(rig));
+  scene.mesh = rectangle_mesh(side, side, mesh_size, column_places(rig, mesh_size), row_places(rig, mesh_size));
   scene.fabric = woven_fabric();
   scene.options.mass_scaling = 50;
   scene.options.time_scaling = 20;

@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "fem/mesh.hpp"
 #include "fem/simulate.hpp"
 #include "fem/workspace.hpp"
+#include "mapping/polygon.hpp"
 #include "tests/fem/scenes.hpp"
 
 namespace drapeplan {
@@ -245,6 +248,41 @@ TEST(GripperRig, KeepsLengthsAtAStepAtWhichASpringOfTheNeededStiffnessIsLongUnst
   }
   EXPECT_TRUE(pendulum.scratch.converged);
   EXPECT_LE(pendulum.state.record.link_error, 1e-12 * length);
+}
+
+/// Area that the nodes of the middle pad span, over its disc's.
+double share_of_disc(const RigOptions& rig, const Mesh& mesh) {
+  const auto nodes = size_t(mesh.node_count());
+  const GripperRig built(rig, mesh.rest, std::vector<double>(nodes, 1.0), std::vector<double>(nodes, 0.0),
+                         {{0, 0}}, 0);
+  Polygon held;
+  for (const int node : built.tied_by_pad().front()) held.push_back(mesh.rest[size_t(node)]);
+  return signed_area(convex_hull(held)) / (std::numbers::pi * rig.pad_radius * rig.pad_radius);
+}
+
+TEST(GripperRig, APadHoldsTheAreaOfItsDiscWhateverTheMesh) {
+  RigOptions rig = one_gripper().options;
+  for (const double mesh_size : {0.003, 0.004, 0.005, 0.007, 0.01, 0.015, 0.02, 0.03}) {
+    const Mesh mesh =
+        rectangle_mesh(0.2, 0.2, mesh_size, column_places(rig, mesh_size), row_places(rig, mesh_size));
+    EXPECT_NEAR(share_of_disc(rig, mesh), 1, 1e-9) << mesh_size;
+  }
+  for (const double mesh_size : {0.004, 0.007, 0.01}) {  // meshes that know nothing of the pad
+    EXPECT_NEAR(share_of_disc(rig, rectangle_mesh(0.2, 0.2, mesh_size)), 1, 0.3) << mesh_size;
+  }
+}
+
+TEST(GripperRig, PadsThatTouchShareNoNode) {
+  RigOptions rig = one_gripper().options;
+  rig.columns = 2;
+  rig.spacing = 2 * rig.pad_radius;
+  const Mesh mesh = rectangle_mesh(0.2, 0.1, 0.02, column_places(rig, 0.02), row_places(rig, 0.02));
+  const auto nodes = size_t(mesh.node_count());
+  const GripperRig built(rig, mesh.rest, std::vector<double>(nodes, 1.0), std::vector<double>(nodes, 0.0),
+                         {{-0.02, 0}, {0.02, 0}}, 0);
+  const auto held = built.tied_by_pad();
+  EXPECT_EQ(held[0].size(), held[1].size());
+  for (const int node : held[0]) EXPECT_EQ(std::count(held[1].begin(), held[1].end(), node), 0);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ TEST(Loads, PassTheTermKit) {
   scene.loads =
       Loads{.forces = {{2, push}, {2, push}}, .moments = {{5, {0, moment, 0}}}, .pressure = pressure};
   const Model model(scene);
-  EXPECT_EQ(model.term_names(), (std::vector<std::string>{"shell", "loads"}));
+  EXPECT_EQ(model.term_names(), (std::vector<std::string>{"shell, 3 section points", "loads"}));
   test::TermSubject subject{.model = &model, .term = 1, .state = model.flat_state(0)};
   test::disturb(subject.state, model.node_count(), 1e-3, 0);
   test::put(subject.state.d, 5, {std::sin(0.8), 0, std::cos(0.8)});

@@ -292,7 +292,7 @@ TEST(Rates, OfASingleCurveAreNone) {
   const RunResult a = simulate(Model(without), {.duration = 0.05}),
                   b = simulate(Model(one), {.duration = 0.05});
   EXPECT_EQ(a.report.state_hash, b.report.state_hash);
-  EXPECT_EQ(Model(one).term_names().front(), "shell");
+  EXPECT_EQ(Model(one).term_names().front(), "shell, 3 section points");
 }
 
 TEST(Rates, OfEqualCurvesMoveTheStripAsOneCurveDoes) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "fem/workspace.hpp"
 #include "tests/fem/drapes.hpp"
 
@@ -50,10 +52,79 @@ TEST(Simulate, ListsOnlyTheTermsThatTheSceneNeeds) {
   Scene strip;
   strip.mesh = rectangle_mesh(0.1, 0.02, 0.01);
   strip.fabric = test::woven_fabric();
-  EXPECT_EQ(Model(strip).term_names(), std::vector<std::string>{"shell"});
+  EXPECT_EQ(Model(strip).term_names(), std::vector<std::string>{"shell, 3 section points"});
   EXPECT_TRUE(Model(strip).flat_state(0).anchor.x.empty());
   strip.gravity = 9.81;
-  EXPECT_EQ(Model(strip).term_names(), (std::vector<std::string>{"shell", "gravity"}));
+  EXPECT_EQ(Model(strip).term_names(), (std::vector<std::string>{"shell, 3 section points", "gravity"}));
+  strip.options.section_points = 1;
+  strip.damping = 10;
+  strip.clamped = {0};
+  EXPECT_EQ(Model(strip).term_names(),
+            (std::vector<std::string>{"shell, 1 section point", "gravity", "mass damping", "clamp"}));
+  const Scene drape = small_drape();
+  const std::vector<std::string> names = Model(drape).term_names();
+  for (const char* name : {"contact with friction", "gripper rig with interlinks", "fixed joint"})
+    EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
+}
+
+TEST(Simulate, KeepsNoMemoryForWhatTheSceneDoesNotHave) {
+  Scene strip;
+  strip.mesh = rectangle_mesh(0.1, 0.02, 0.01);
+  strip.fabric = test::woven_fabric();
+  const Model model(strip);
+  const State state = model.flat_state(0);
+  for (const auto* field : {&state.anchor, &state.edges[0], &state.edges[1]}) EXPECT_TRUE(field->x.empty());
+  EXPECT_TRUE(state.stuck.empty());
+  EXPECT_TRUE(state.pads.empty());
+  const Workspace work(model);
+  EXPECT_EQ(work.entries.size(), 1u);
+  for (const auto* field : {&work.mean_v, &work.mean_w, &work.force, &work.moment})
+    EXPECT_TRUE(field->x.empty());
+  EXPECT_TRUE(work.has_tied.empty());
+  EXPECT_TRUE(work.rig.free_v.empty());
+  EXPECT_TRUE(work.inertia.mobility.empty());
+  strip.options.step_interval = 0;  // one step for good: nothing to choose it with
+  const Model steady(strip);
+  EXPECT_TRUE(steady.flat_state(0).lightness.empty());
+  EXPECT_TRUE(Workspace(steady).step.sections.empty());
+}
+
+TEST(Simulate, ReportsWhichFiguresTheSceneHas) {
+  Scene strip;
+  strip.mesh = rectangle_mesh(0.1, 0.02, 0.01);
+  strip.fabric = test::woven_fabric();
+  const ReportParts none = simulate(Model(strip), {.duration = 1e-3}).report.parts;
+  for (const bool part :
+       {none.external, none.contact, none.friction, none.damping, none.constraint, none.links})
+    EXPECT_FALSE(part);
+  const Scene drape = small_drape();
+  const ReportParts all = Model(drape).report_parts();
+  for (const bool part : {all.external, all.contact, all.friction, all.constraint, all.links})
+    EXPECT_TRUE(part);
+}
+
+TEST(Simulate, LeavesAFreeSheetAtRest) {
+  Scene sheet;
+  sheet.mesh = rectangle_mesh(0.1, 0.1, 0.0033);
+  sheet.fabric = test::woven_fabric();
+  const RunResult result = simulate(Model(sheet), {.duration = 0.02});
+  EXPECT_EQ(result.report.status, RunStatus::done) << result.report.message;
+  EXPECT_LE(result.report.energy.balance_error, 1e-3);
+  EXPECT_LE(std::abs(result.final.position.front().z()), 1e-15);
+}
+
+TEST(Simulate, WithoutDampingIsTheSameAsWithNone) {
+  Scene strip;
+  strip.mesh = rectangle_mesh(0.1, 0.02, 0.01);
+  strip.fabric = test::woven_fabric();
+  strip.gravity = 9.81;
+  strip.clamped = {0, 1, 2};
+  const auto hash = [&strip] { return simulate(Model(strip), {.duration = 0.01}).report.state_hash; };
+  const std::uint64_t absent = hash();
+  strip.damping = 0;
+  EXPECT_EQ(absent, hash());
+  strip.damping = 1;
+  EXPECT_NE(absent, hash());
 }
 
 TEST(Simulate, RefusesAPadWithoutNodesAndAScheduleOfAnotherRig) {

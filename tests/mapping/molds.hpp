@@ -1,6 +1,9 @@
 // Molds that several tests use.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "mapping/mold.hpp"
 
 namespace drapeplan {
@@ -30,6 +33,26 @@ inline Mold sphere(const Eigen::Vector3d& centre, double radius) {
 inline Mold cylinder(const Eigen::Vector3d& centre, double azimuth, double radius) {
   const Eigen::Vector2d half = Eigen::Vector2d::Constant(radius / 2);
   return Mold(CylinderShape{centre, azimuth, radius}, {centre.head<2>() - half, centre.head<2>() + half});
+}
+
+/// Smallest and largest Gaussian curvature on a grid over the extent [1/m^2].
+struct CurvatureRange {
+  double smallest = std::numeric_limits<double>::quiet_NaN(), largest = smallest;
+};
+inline CurvatureRange gaussian_curvature_range(const Mold& mold) {
+  constexpr int kPlaces = 201;  // per side
+  CurvatureRange range;         // fmin and fmax skip places where the mold is not defined
+  const Extent& extent = mold.extent();
+  const Eigen::Vector2d step = (extent.upper - extent.lower) / (kPlaces - 1);
+  for (int j = 0; j < kPlaces; ++j) {
+    for (int i = 0; i < kPlaces; ++i) {
+      const Eigen::Vector2d at = extent.lower + step.cwiseProduct(Eigen::Vector2d(i, j));
+      const double curvature = mold.gaussian_curvature(at.x(), at.y());
+      range.smallest = std::fmin(range.smallest, curvature);
+      range.largest = std::fmax(range.largest, curvature);
+    }
+  }
+  return range;
 }
 
 }  // namespace drapeplan

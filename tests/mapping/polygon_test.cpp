@@ -24,5 +24,14 @@ TEST(Polygon, KnowsItsAreaItsInsideAndWhereItCrossesItself) {
   EXPECT_TRUE(crossing_edges({{0, 0}, {1, 0}, {0.5, 0}, {0, 1}}).has_value());  // folds back
 }
 
+TEST(Polygon, ConvexHullLeavesOutWhatLiesInsideAndOnEdges) {
+  const Polygon hull = convex_hull({{0, 0}, {1, 0}, {0.5, 0}, {1, 1}, {0.5, 0.5}, {0, 1}, {0, 0.2}});
+  EXPECT_EQ(hull.size(), 4U);
+  EXPECT_NEAR(signed_area(hull), 1, 1e-15);
+  EXPECT_EQ(convex_hull({{0, 0}, {2, 2}, {1, 1}}).size(), 2U);  // in a line: no area
+  EXPECT_EQ(convex_hull({{3, 4}}).size(), 0U);
+  EXPECT_EQ(convex_hull({}).size(), 0U);
+}
+
 }  // namespace
 }  // namespace drapeplan

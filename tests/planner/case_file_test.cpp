@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "planner/quantity.hpp"
+#include "tests/mapping/molds.hpp"
 
 namespace drapeplan {
 namespace {

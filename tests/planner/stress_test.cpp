@@ -60,7 +60,7 @@ TEST(Stress, CallsARunWrongWhoseFigureIsNotTheRightOne) {
   scene.judge = [](const StressRun&) { return std::vector{at_most("not a number", std::nan(""), 1)}; };
   EXPECT_EQ(play_stress(scene).verdict, Verdict::wrong);
   scene.judge = nullptr;
-  scene.most_drift = 0;  // what holds for all scenes counts, too
+  scene.most_balance = -1;  // what holds for all scenes counts, too
   EXPECT_EQ(play_stress(scene).verdict, Verdict::wrong);
 }
 

@@ -140,16 +140,6 @@ TEST(Vtu, MoldIsLeftOutWhereItIsNotDefined) {
   }
 }
 
-TEST(Vtu, GrippersAreLinesFromPadToJoint) {
-  Snapshot snapshot;
-  snapshot.pad = {{0, 0, 1}, {1, 0, 1}};
-  snapshot.joint = {{0, 0, 2}, {1, 0, 2}};
-  snapshot.actuator_force = {-3, 4};
-  const std::string text = written([&](const auto& file) { write_grippers_vtu(file, snapshot); });
-  EXPECT_EQ(values_of<std::int64_t>(text, "connectivity"), (std::vector<std::int64_t>{0, 2, 1, 3}));
-  EXPECT_EQ(values_of<double>(text, "actuator_force"), snapshot.actuator_force);
-}
-
 TEST(Vtu, CollectionKeepsAllDigitsOfItsTimes) {
   const double later = 1 + std::numeric_limits<double>::epsilon();
   const std::string text = written([&](const auto& file) {

@@ -1,0 +1,225 @@
+// study: error against run time.
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "planner/cli.hpp"
+#include "planner/drape_problem.hpp"
+#include "planner/statistics.hpp"
+#include "planner/study_files.hpp"
+#include "planner/study_runner.hpp"
+
+namespace drapeplan {
+namespace {
+
+using nlohmann::json;
+
+struct StudyOptions {
+  CommonOptions common;
+  std::string file;
+  std::vector<std::string> parts{"sweep", "ranks", "noise", "mapping", "reach", "search"};
+  double refinement = 2.5;
+  int schedules = 24;
+  int repeats = 3;
+  bool resume = false;
+
+  [[nodiscard]] bool wants(const char* part) const {
+    return std::find(parts.begin(), parts.end(), part) != parts.end();
+  }
+};
+
+/// A line on stderr every few seconds: what is done, how long still.
+class ProgressLine {
+ public:
+  void operator()(const std::string& what, int done, int of) {
+    const auto now = std::chrono::steady_clock::now();
+    if (what != what_) what_ = what, start_ = now;
+    constexpr int kSeconds = 5;
+    if (done < of && now - shown_ < std::chrono::seconds(kSeconds)) return;
+    shown_ = now;
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    std::fprintf(stderr, "  %4d/%d  %s", done, of, what.c_str());
+    if (done > 1 && done < of) std::fprintf(stderr, "   about %.0f s left", seconds / done * (of - done));
+    std::fputc('\n', stderr);
+  }
+
+ private:
+  std::string what_;
+  std::chrono::steady_clock::time_point start_, shown_{};
+};
+
+/// What every part of a study needs.
+struct StudyWork {
+  const StudySubject& subject;
+  StudyRunner& runner;
+  const StudyOptions& options;
+};
+
+/// Runs every setting with every schedule. @return by setting, then by schedule.
+std::vector<std::vector<StudyRun>> run_all(StudyWork& work, const std::string& what,
+                                           const std::vector<Settings>& settings,
+                                           const std::vector<Schedule>& schedules) {
+  std::vector<StudyJob> jobs;
+  for (const Settings& one : settings) {
+    for (const Schedule& schedule : schedules) jobs.push_back({one, schedule});
+  }
+  const std::vector<StudyRun> runs = work.runner.run(what, jobs);
+  std::vector<std::vector<StudyRun>> result;
+  for (size_t k = 0; k < settings.size(); ++k) {
+    const auto first = runs.begin() + std::ptrdiff_t(k * schedules.size());
+    result.emplace_back(first, first + std::ptrdiff_t(schedules.size()));
+  }
+  return result;
+}
+
+void sweep(StudyWork& work, Study& study) {
+  const std::vector<Schedule> schedules = work.subject.schedules(int(work.subject.baselines().size()));
+  study.points = sweep_points(work.subject);
+  std::vector<Settings> settings{study.reference, {}};
+  for (const StudyPoint& point : study.points) settings.push_back(point.settings);
+  std::vector<std::vector<StudyRun>> runs = run_all(work, "sweep", settings, schedules);
+  study.reference_runs = runs[0];
+  std::map<std::string, std::vector<StudyRun>> careful;  // the first point of each curve
+  for (size_t k = 0; k < study.points.size(); ++k) {
+    StudyPoint& point = study.points[k];
+    point.runs = std::move(runs[k + 2]);
+    const auto [first, fresh] = careful.try_emplace(point.curve, point.runs);
+    point.error = study_errors(point.runs, study.reference_runs, study.drapes);
+    point.knob_error = study_errors(point.runs, first->second, study.drapes);
+    if (!fresh || point.settings.size() != 1) continue;
+    const auto left = study_errors(runs[1], point.runs, study.drapes);
+    if (left.count("relative") > 0) study.base_error[point.curve] = left.at("relative");
+  }
+}
+
+/// Every fidelity of the case and every combination of the sweep, named ones first.
+std::vector<RankRow> rank_rows(const StudySubject& subject) {
+  std::vector<RankRow> named{{"fem", {}, 0, 0, 0, {}, 0}}, others;
+  for (const StudyPoint& point : sweep_points(subject)) {
+    const std::string fidelity = "fidelity ";
+    if (point.curve.starts_with(fidelity)) {
+      named.push_back({point.curve.substr(fidelity.size()), point.settings, 0, 0, 0, {}, 0});
+    } else if (point.curve == "combination") {
+      others.push_back({"", point.settings, 0, 0, 0, {}, 0});
+    }
+  }
+  named.insert(named.end(), others.begin(), others.end());
+  return named;
+}
+
+std::vector<double> objectives(const std::vector<StudyRun>& runs) {
+  std::vector<double> values;
+  for (const StudyRun& run : runs) values.push_back(run.valid ? run.objective : std::nan(""));
+  return values;
+}
+
+/// The reference of the ranks is the reporting fidelity: it decides what is claimed.
+void rank(StudyWork& work, Study& study) {
+  const std::vector<Schedule> schedules = work.subject.schedules(work.options.schedules);
+  study.schedules = int(schedules.size());
+  study.ranks = rank_rows(work.subject);
+  const Settings reference = work.subject.changes_of(kReport);
+  study.rank_reference = "the reporting fidelity";
+  std::vector<Settings> settings{reference};
+  for (const RankRow& row : study.ranks) settings.push_back(row.settings);
+  const std::vector<std::vector<StudyRun>> runs = run_all(work, "ranks", settings, schedules);
+  for (size_t k = 0; k < study.ranks.size(); ++k) {
+    std::vector<double> times;
+    for (const StudyRun& run : runs[k + 1]) times.push_back(run.wall_seconds);
+    study.ranks[k].wall_seconds = median(times);
+    study.ranks[k].objectives = objectives(runs[k + 1]);
+  }
+  rank_against(objectives(runs[0]), study.ranks);
+}
+
+void measure_noise(StudyWork& work, Study& study) {
+  constexpr int kPoints = 7;
+  constexpr double kStep = 1e-3;  // of the family's box: a few milliseconds, far below what a robot can tell
+  const std::vector<Schedule> line = work.subject.line_of_schedules(kPoints, kStep);
+  std::vector<Settings> settings{{}};
+  std::vector<std::string> names{"fem"};
+  for (const std::string& name : work.subject.fidelities()) {
+    names.push_back(name);
+    settings.push_back(work.subject.changes_of(name));
+  }
+  const std::vector<std::vector<StudyRun>> runs = run_all(work, "noise", settings, line);
+  for (size_t k = 0; k < runs.size(); ++k) {
+    const std::vector<double> values = objectives(runs[k]);
+    if (std::any_of(values.begin(), values.end(), [](double value) { return !std::isfinite(value); }))
+      continue;
+    const NoiseEstimate noise = difference_noise(values);
+    study.noise.push_back({names[k], settings[k], kStep, median(values), noise.noise, noise.consistent});
+  }
+}
+
+Study study_case(const StudySubject& subject, StudyRunner& runner, const StudyOptions& options,
+                 const std::filesystem::path& folder) {
+  StudyWork work{subject, runner, options};
+  Study study;
+  study.case_name = subject.base().name;
+  study.drapes = subject.drapes();
+  study.reference = reference_settings(subject, options.refinement);
+  if (options.wants("mapping")) study.mapping = study_mapping(subject, options.repeats);
+  if (options.wants("reach")) study.reach = study_reach(subject, options.repeats);
+  if (options.wants("sweep")) sweep(work, study);
+  if (options.wants("noise") && study.drapes) measure_noise(work, study);
+  if (options.wants("ranks") && study.drapes) rank(work, study);
+  if (options.wants("search"))
+    study.searches = study_search(subject, folder / "search", options.common.threads);
+  return study;
+}
+
+int run_study(const StudyOptions& options) {
+  const std::optional<Case> value = load_case(options.file, options.common, {"material"});
+  if (!value) return kInputWrong;
+  const std::filesystem::path folder = options.common.out.empty()
+                                           ? std::filesystem::path("out") / ("study-" + value->name)
+                                           : std::filesystem::path(options.common.out);
+  std::filesystem::create_directories(folder);
+  const StudySubject subject(options.file, options.common.overrides);
+  ProgressLine line;
+  StudyRunner runner(subject,
+                     {folder / "study.jsonl", options.resume, options.common.threads, options.repeats},
+                     [&](const std::string& what, int done, int of) {
+                       if (!options.common.quiet) line(what, done, of);
+                     });
+  const Study study = study_case(subject, runner, options, folder);
+  write_study(folder, study);
+  CommonOptions common = options.common;
+  common.out = folder.string();
+  const int code = deliver(study_json(study), study_text(study), common, &*value);
+  const bool referred =
+      study.points.empty() || std::any_of(study.points.begin(), study.points.end(),
+                                          [](const StudyPoint& point) { return point.valid(); });
+  if (!referred) std::cerr << "study: no setting can be compared with the reference\n";
+  return referred ? code : kNotFinished;
+}
+
+}  // namespace
+
+void add_study(CLI::App& program, Action& action) {
+  add_verb<StudyOptions>(
+      program, action, "study", "error against run time: of settings, fidelities, mapping, reach and search",
+      [](CLI::App& verb, StudyOptions& options) {
+        verb.add_option("CASE", options.file, "case file")->required();
+        verb.add_option("--part", options.parts,
+                        "only these: sweep, ranks, noise, mapping, reach, search (repeatable; default: all)")
+            ->check(CLI::IsMember({"sweep", "ranks", "noise", "mapping", "reach", "search"}))
+            ->expected(1)
+            ->take_all()
+            ->allow_extra_args(false);
+        verb.add_option("--refinement", options.refinement,
+                        "mesh size of the case over that of the reference (default: 2.5)")
+            ->check(CLI::Range(1.01, 20.0));
+        verb.add_option("--schedules", options.schedules, "that are ranked (default: 24)")
+            ->check(CLI::Range(4, 1000));
+        verb.add_option("--repeats", options.repeats, "of short runs; the median time counts (default: 3)")
+            ->check(CLI::Range(1, 100));
+        verb.add_flag("--resume", options.resume,
+                      "runs that the folder's study.jsonl holds are not done again");
+      },
+      run_study);
+}
+
+}  // namespace drapeplan

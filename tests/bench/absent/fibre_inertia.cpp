@@ -1,0 +1,30 @@
+// In place of fem/fibre_inertia.cpp.
+#include "fem/fibre_inertia.hpp"
+
+#include "tests/bench/absent/absent.hpp"
+
+namespace drapeplan {
+namespace {
+
+constexpr const char* kInertia = "mass on fibres";
+
+}  // namespace
+
+FibreInertia::FibreInertia(const Mesh& /*mesh*/, const std::vector<char>& /*borne*/, double /*stretch*/,
+                           double /*rate*/, std::vector<double> /*mobility*/,
+                           std::vector<std::vector<int>> /*tied*/)
+    : count_(0) {
+  absent(kInertia);
+}
+FibreInertiaScratch FibreInertia::scratch() const {
+  absent(kInertia);
+}
+void FibreInertia::aim(State& /*state*/) const {
+  absent(kInertia);
+}
+void FibreInertia::filter(const State& /*state*/, FibreInertiaScratch& /*scratch*/,
+                          VectorField& /*force*/) const {
+  absent(kInertia);
+}
+
+}  // namespace drapeplan
