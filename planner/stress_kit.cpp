@@ -179,7 +179,8 @@ StressSetup corner_drape(double mesh_size) {
   rig.columns = rig.rows = 2;
   rig.spacing = 0.12;
   scene.rig = rig;
-  scene.mesh = rectangle_mesh(0.16, 0.16, mesh_size, column_places(rig), row_places(rig));
+  scene.mesh =
+      rectangle_mesh(0.16, 0.16, mesh_size, column_places(rig, mesh_size), row_places(rig, mesh_size));
   scene.fabric = woven_fabric();
   scene.options.mass_scaling = 4;
   scene.options.time_scaling = 10;
