@@ -8,9 +8,7 @@ namespace {
 
 namespace stdx = std::experimental;
 
-/// Square of the steepest slope that can be touched (84 degrees): at a vertical wall a height field has no
-/// distance.
-constexpr double kSteepest2 = 100;
+constexpr double kSteepest2 = kSteepestContact * kSteepestContact;
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 
 /// Nodes within this share of the half thickness above the surface get the second evaluation. The tangent
@@ -48,15 +46,21 @@ struct Neighbourhood {
 template <bool kFriction>
 class ContactTerm final : public Term {
  public:
-  ContactTerm(const Mold& mold, double friction, ContactSprings springs, double surface, int look_ahead)
+  ContactTerm(const Mold& mold, double friction, ContactSprings springs, double surface, int look_ahead,
+              ReleasedSprings released)
       : mold_(mold),
         friction_(friction),
         springs_(std::move(springs)),
+        released_(std::move(released.springs)),
         surface_(surface),
         look_ahead_(look_ahead),
         count_(int(springs_.stiffness.size())) {
     springs_.stiffness.resize(padded(count_), 1.0);
     springs_.damping.resize(padded(count_), 0.0);
+    pad_.assign(padded(count_), kNoPad);
+    for (size_t g = 0; g < released.nodes.size(); ++g) {
+      for (const int node : released.nodes[g]) pad_[size_t(node)] = int(g);
+    }
   }
 
   [[nodiscard]] std::string_view name() const override {
@@ -71,7 +75,7 @@ class ContactTerm final : public Term {
   }
 
   void add_stiffness(NodalStiffness& stiffness) const override {
-    for (size_t n = 0; n < size_t(count_); ++n) add_node(n, stiffness);
+    for (size_t n = 0; n < size_t(count_); ++n) add_node(springs_, n, stiffness);
   }
 
   /// Nodes that touch, or would in `look_ahead` steps at twice their speed.
@@ -85,7 +89,8 @@ class ContactTerm final : public Term {
         const double speed = std::hypot(state.v.x[n], state.v.y[n], state.v.z[n]);
         const double reach = (1 + kNear) * surface_ + 2 * look_ahead_ * state.dt * speed;
         const double distance = (state.x.z[n] - z[k]) / std::sqrt(1 + zx[k] * zx[k] + zy[k] * zy[k]);
-        if (distance < reach) add_node(n, stiffness);  // false where the mold is not defined
+        if (distance < reach)  // false where the mold is not defined
+          add_node(let_go(state, n) ? released_ : springs_, n, stiffness);
       }
     }
   }
@@ -113,9 +118,32 @@ class ContactTerm final : public Term {
   }
 
  private:
-  void add_node(size_t n, NodalStiffness& stiffness) const {
-    stiffness.translation[n] += springs_.stiffness[n];
-    stiffness.damping[n] += springs_.damping[n];
+  static void add_node(const ContactSprings& springs, size_t n, NodalStiffness& stiffness) {
+    stiffness.translation[n] += springs.stiffness[n];
+    stiffness.damping[n] += springs.damping[n];
+  }
+
+  bool let_go(const State& state, size_t n) const {
+    return pad_[n] != kNoPad && state.pads[size_t(pad_[n])].released;
+  }
+
+  /// Springs of the lanes at a node.
+  void springs_at(const State& state, size_t at, Lanes& stiffness, Lanes& damping) const {
+    stiffness = load(&springs_.stiffness[at]);
+    damping = load(&springs_.damping[at]);
+    if (!any_released(state)) return;
+    for (size_t lane = 0; lane < size_t(kLanes); ++lane) {
+      if (!let_go(state, at + lane)) continue;
+      stiffness[lane] = released_.stiffness[at + lane];
+      damping[lane] = released_.damping[at + lane];
+    }
+  }
+
+  static bool any_released(const State& state) {
+    for (const PadState& pad : state.pads) {
+      if (pad.released) return true;
+    }
+    return false;
   }
 
   /// What is left of a chunk's clearance after the step that led here, at twice the speed of its fastest
@@ -180,7 +208,8 @@ class ContactTerm final : public Term {
     if (stdx::none_of(touching)) return release(state, entries, at);
     gap = zero_unless(touching, gap);
     for (Lanes* part : {&normal.x, &normal.y, &normal.z}) *part = zero_unless(touching, *part);
-    const Lanes stiffness = load(&springs_.stiffness[at]), damping = load(&springs_.damping[at]);
+    Lanes stiffness, damping;
+    springs_at(state, at, stiffness, damping);
     const Vec3<Lanes> v = state.v.lanes(at);
     const Lanes approach = -dot(v, normal);
     const Lanes push = stdx::max(damping * approach - stiffness * gap, zero);
@@ -207,7 +236,9 @@ class ContactTerm final : public Term {
 
   Mold mold_;
   double friction_;
-  ContactSprings springs_;
+  static constexpr int kNoPad = -1;
+  ContactSprings springs_, released_;
+  std::vector<int> pad_;  ///< that holds a node, or kNoPad
   double surface_;
   int look_ahead_;
   int count_;
@@ -230,10 +261,12 @@ class GravityTerm final : public Term {
 }  // namespace
 
 std::unique_ptr<Term> make_contact(const Mold& mold, std::optional<double> friction, ContactSprings springs,
-                                   double surface, int look_ahead) {
+                                   double surface, int look_ahead, ReleasedSprings released) {
   if (friction)
-    return std::make_unique<ContactTerm<true>>(mold, *friction, std::move(springs), surface, look_ahead);
-  return std::make_unique<ContactTerm<false>>(mold, 0.0, std::move(springs), surface, look_ahead);
+    return std::make_unique<ContactTerm<true>>(mold, *friction, std::move(springs), surface, look_ahead,
+                                               std::move(released));
+  return std::make_unique<ContactTerm<false>>(mold, 0.0, std::move(springs), surface, look_ahead,
+                                              std::move(released));
 }
 
 std::unique_ptr<Term> make_gravity(const std::vector<double>& mass, double acceleration) {

@@ -13,6 +13,30 @@ using Eigen::Vector3d;
 constexpr double kServoDamping = 1;   // damping ratio of a joint on its actuator: a servo does not ring
 constexpr double kStartSlack = 1e-6;  // [m]; a schedule is rounded to it
 
+std::string gripper_name(const RigOptions& rig, int index);
+
+bool is_finite(const Knot& knot) {
+  return std::isfinite(knot.time) && std::isfinite(knot.z);
+}
+bool is_finite(const PlaneKnot& knot) {
+  return std::isfinite(knot.time) && knot.xy.allFinite();
+}
+
+/// Files are checked when they are read; schedules may come from elsewhere.
+template <class AnyKnot>
+void check_knots(const RigOptions& rig, const std::vector<std::vector<AnyKnot>>& paths) {
+  for (size_t g = 0; g < paths.size(); ++g) {
+    const auto fail = [&](const std::string& what) {
+      throw std::invalid_argument("the path of " + gripper_name(rig, int(g)) + " " + what);
+    };
+    if (paths[g].empty()) fail("has no knots");
+    for (size_t k = 0; k < paths[g].size(); ++k) {
+      if (!is_finite(paths[g][k])) fail("has a knot that is not finite");
+      if (k > 0 && !(paths[g][k].time > paths[g][k - 1].time)) fail("has times that do not increase");
+    }
+  }
+}
+
 std::string gripper_name(const RigOptions& rig, int index) {
   return "gripper [" + std::to_string(index % rig.columns + 1) + ", " +
          std::to_string(index / rig.columns + 1) + "]";
@@ -151,6 +175,8 @@ RigScratch GripperRig::scratch() const {
 }
 
 void GripperRig::check(const Schedule& schedule) const {
+  check_knots(rig_, schedule.paths);
+  check_knots(rig_, schedule.plane_paths);
   if (int(schedule.paths.size()) != rig_.count()) {
     throw std::invalid_argument("the schedule has " + std::to_string(schedule.paths.size()) +
                                 " grippers, the rig " + std::to_string(rig_.count()));

@@ -43,12 +43,16 @@ Vector3d grip_displacement(const Grip& grip, double t) {
 
 void move_grips(const Model& model, State& state, Workspace& work) {
   const double scaling = model.scene().options.time_scaling;
+  // kick_nodes has damped the velocities of all nodes; a grip's is given, and its mean with the next books
+  // work.
+  const double half = 0.5 * model.alpha() * state.kick_time(), keep = (1 - half) / (1 + half);
   for (const Grip& grip : model.scene().grips) {
     const Vector3d way = grip_displacement(grip, scaling * (state.time + state.dt)) -
                          grip_displacement(grip, scaling * state.time);
     const Vector3d next = way / state.dt;
     const auto first = size_t(grip.nodes.front());
-    const Vector3d mean = 0.5 * (Vector3d(state.v.x[first], state.v.y[first], state.v.z[first]) + next);
+    const Vector3d damped(state.v.x[first], state.v.y[first], state.v.z[first]);
+    const Vector3d mean = 0.5 * (damped / keep + next);
     for (const int node : grip.nodes) {
       set(state.v, size_t(node), next);
       set(work.mean_v, size_t(node), mean);

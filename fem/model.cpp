@@ -36,6 +36,61 @@ void add_mold(Fnv1a& hash, const Mold& mold) {
   }
 }
 
+/// Smallest radius of curvature of the mold's sections over the longest element edge: below it a mesh of flat
+/// elements has nothing in common with the mold, and a ball slips between its nodes.
+constexpr double kLeastRadius = 1;
+
+double longest_edge(const Mesh& mesh) {
+  double longest = 0;
+  for (const auto& quad : mesh.quads) {
+    for (size_t c = 0; c < 4; ++c)
+      longest = std::max(longest, (mesh.rest[size_t(quad[c])] - mesh.rest[size_t(quad[(c + 1) % 4])]).norm());
+  }
+  return longest;
+}
+
+/// Largest normal curvature of the mold where it is defined, in its extent [1/m].
+double sharpest_curvature(const Mold& mold) {
+  constexpr int kSamples = 101;  // per side: fewer than nodes in most plies, but molds are smooth formulas
+  double sharpest = 0;
+  const Extent& extent = mold.extent();
+  for (int i = 0; i < kSamples; ++i) {
+    for (int j = 0; j < kSamples; ++j) {
+      const Eigen::Vector2d share(double(i) / (kSamples - 1), double(j) / (kSamples - 1));
+      const Eigen::Vector2d at = extent.lower + share.cwiseProduct(extent.upper - extent.lower);
+      const Jet jet = mold.jet(at.x(), at.y());
+      const double slope2 = jet.zx * jet.zx + jet.zy * jet.zy;
+      if (!(slope2 < kSteepestContact * kSteepestContact)) continue;  // nothing touches there
+      // Principal curvatures of a height field: roots with mean H and product K.
+      const double stretch2 = 1 + slope2;
+      const double product = (jet.zxx * jet.zyy - jet.zxy * jet.zxy) / (stretch2 * stretch2);
+      const double mean = ((1 + jet.zy * jet.zy) * jet.zxx - 2 * jet.zx * jet.zy * jet.zxy +
+                           (1 + jet.zx * jet.zx) * jet.zyy) /
+                          (2 * std::pow(stretch2, 1.5));
+      const double spread = std::sqrt(std::max(mean * mean - product, 0.0));
+      sharpest = std::max(sharpest, std::abs(mean) + spread);
+    }
+  }
+  return sharpest;
+}
+
+/// What contact cannot do is refused.
+void check_mold(const Scene& scene) {
+  const double radius = 1 / std::max(sharpest_curvature(*scene.mold), 1e-12), edge = longest_edge(scene.mesh);
+  if (radius < kLeastRadius * edge) {
+    throw std::invalid_argument("the mold is curved with a radius of " + std::to_string(1e3 * radius) +
+                                " mm, elements are up to " + std::to_string(1e3 * edge) +
+                                " mm long: refine the mesh");
+  }
+  if (scene.start != Start::on_mold) return;
+  const Jet jet = scene.mold->jet(scene.position.x(), scene.position.y());
+  if (!(std::hypot(jet.zx, jet.zy) < kSteepestContact)) {
+    throw std::invalid_argument(
+        "the ply starts where the mold is too steep, or not defined: nothing touches a height field beyond "
+        "84 degrees");
+  }
+}
+
 /// Largest 2 / dt with contact over that without it: with spring a K of a node's row K and share z of its
 /// critical damping, s^2 = K / m (1 + a) + 2 z sqrt(a K / m) s (see stable_dt); the larger root, over
 /// sqrt(K / m).
@@ -54,6 +109,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   if (scene_.start == Start::on_mold && (!scene_.mold || scene_.rig)) {
     throw std::invalid_argument("a ply that starts on the mold needs a mold, and no rig");
   }
+  if (scene_.mold) check_mold(scene_);
   const std::vector<double> area = nodal_areas(mesh);
   std::vector<double> unscaled(n);
   for (size_t k = 0; k < n; ++k) unscaled[k] = scene_.fabric.areal_density * area[k];
@@ -111,6 +167,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
     for (int g = 0; g < scene_.rig->count(); ++g)
       place.emplace_back(scene_.position + turn * scene_.rig->place(g));
     rig_.emplace(*scene_.rig, mesh.rest, mass_, inertia_, place, scene_.angle);
+    pad_nodes_ = rig_->tied_by_pad();
     for (const int node : rig_->tied()) {
       if (mass_[size_t(node)] == 0)
         throw std::invalid_argument("a node under a pad is clamped, pinned or gripped");
@@ -118,6 +175,8 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
     held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
     guided_.insert(guided_.end(), rig_->tied().begin(), rig_->tied().end());
   }
+  if (!rig_ && std::all_of(mass_.begin(), mass_.end(), [](double mass) { return mass == 0; }))
+    throw std::invalid_argument("every node of the ply is held: nothing can move; refine the mesh");
   bear_held_nodes();
   if (scene_.mold) add_contact(stiffness);
   stable_dt_ = stable_dt(stiffness);
@@ -126,7 +185,8 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
     // The joint's mobility: of the pad's mass, and of its inertia through the arm.
     const double arm = scene_.rig->joint_offset / scene_.rig->pad_radius;
     const double mobility = (1 + 2 * arm * arm) / scene_.rig->pad_mass;
-    if (std::sqrt(scene_.rig->actuator_stiffness * mobility) * dt() > kServoStep) {
+    servo_dt_ = kServoStep / std::sqrt(scene_.rig->actuator_stiffness * mobility);
+    if (dt() > servo_dt_) {
       throw std::invalid_argument(
           "the actuators are too stiff for the time step: lower grippers.actuator_stiffness or "
           "raise grippers.pad_mass");
@@ -165,7 +225,7 @@ void Model::add_fibre_inertia(double rise) {
     mobility[size_t(node)] = 1 / own_mass_[size_t(node)];
   const double rate = rise * selective_rate_;
   fibre_inertia_.emplace(scene_.mesh, shell_->borne(), shell_->borne_stretch(), rate, std::move(mobility),
-                         rig_ ? rig_->tied_by_pad() : std::vector<std::vector<int>>());
+                         pad_nodes_);
   selective_dt_ = stable_dt(rate);
   shell_->set_borne_step(selective_dt_);
   stable_dt_ = std::min(stable_dt_, selective_dt_);
@@ -205,15 +265,23 @@ void Model::add_contact(NodalStiffness& stiffness) {
     const double most = kBareShare * selective_rate_ * selective_rate_;
     for (size_t k = 0; k < n; ++k) springs.stiffness[k] = std::min(springs.stiffness[k], most * own_mass_[k]);
   }
+  const auto dashpots = [&options](ContactSprings& of, const std::vector<double>& mass) {
+    for (size_t k = 0; k < mass.size(); ++k)
+      of.damping[k] = 2 * options.contact_damping * std::sqrt(of.stiffness[k] * mass[k]);
+  };
+  ReleasedSprings released;
+  if (rig_) {
+    released = {pad_nodes_, springs};
+    dashpots(released.springs, own_mass_);
+  }
   for (const int node : rig_ ? rig_->tied() : std::vector<int>()) {
     const auto k = size_t(node);
     const double surplus = bearing_mass_[k] - own_mass_[k];
     springs.stiffness[k] = std::max(springs.stiffness[k], kPadShare * surplus * highest * highest);
   }
-  for (size_t k = 0; k < n; ++k)
-    springs.damping[k] = 2 * options.contact_damping * std::sqrt(springs.stiffness[k] * bearing_mass_[k]);
+  dashpots(springs, bearing_mass_);
   terms_.push_back(make_contact(*scene_.mold, scene_.friction, std::move(springs),
-                                0.5 * scene_.fabric.thickness, options.step_interval));
+                                0.5 * scene_.fabric.thickness, options.step_interval, std::move(released)));
   terms_.back()->add_stiffness(stiffness);
 }
 
@@ -258,6 +326,17 @@ void Model::lighten(const NodalStiffness& stiffness, double highest_rate,
   const Lanes unit(1 / stdx::hmax(largest));  // only ratios count: the lightest has 1
   for (size_t n = 0; n < size_t(node_count()); n += size_t(kLanes))
     store(stdx::clamp(load(&lightness[n]) * unit, Lanes(kLeast), Lanes(1.0)), &lightness[n]);
+}
+
+void Model::bear_released(const State& state, NodalStiffness& stiffness) const {
+  for (size_t g = 0; g < pad_nodes_.size(); ++g) {
+    if (!state.pads[g].released) continue;
+    for (const int node : pad_nodes_[g]) {
+      const auto k = size_t(node);
+      const double share = bearing_mass_[k] / own_mass_[k];
+      stiffness.translation[k] *= share, stiffness.rotation[k] *= share, stiffness.damping[k] *= share;
+    }
+  }
 }
 
 double Model::free_mass() const {

@@ -1,6 +1,7 @@
 // A scene, and the model built from it: const, shared by all candidates and threads.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -64,12 +65,17 @@ class Model {
   [[nodiscard]] double selective_dt() const { return selective_dt_; }
   /// The step played where it does not change with the state: step_safety times stable_dt [s].
   [[nodiscard]] double dt() const { return scene_.options.step_safety * stable_dt_; }
+  /// Longest step that the actuators bear: steps that follow the state are longer than dt() [s].
+  [[nodiscard]] double servo_dt() const { return servo_dt_; }
   /// Largest stable step for given stiffness bounds over the nodes' own masses [s]. Nodes that are tied or
   /// clamped count as well: what holds them only lowers frequencies.
   [[nodiscard]] double stable_dt(const NodalStiffness& stiffness) const;
   /// 2 / the stable step without viscosity: a bound of the highest frequency, dashpots counted [1/s].
   [[nodiscard]] double stable_dt(double highest_rate) const;
   [[nodiscard]] double highest_rate(const NodalStiffness& stiffness) const;
+  /// Nodes that pads have let go bear stiffness with their own mass: bounds, over the pads' masses so far,
+  /// are raised to hold over that.
+  void bear_released(const State& state, NodalStiffness& stiffness) const;
   /// Lowers the lightness of nodes whose own rate is below the highest, so that it becomes that.
   void lighten(const NodalStiffness& stiffness, double highest_rate, std::vector<double>& lightness) const;
   /// Damping rate on the scaled mass [1/s]: with a mass s times larger, modes are sqrt(s) times slower, and
@@ -84,6 +90,11 @@ class Model {
   [[nodiscard]] const std::vector<double>& inverse_mass() const { return inverse_mass_; }
   [[nodiscard]] const std::vector<double>& inverse_inertia() const { return inverse_inertia_; }
 
+  /// Scaled mass [kg] and director inertia [kg m^2] of a node, held or not.
+  [[nodiscard]] double own_mass(int node) const { return own_mass_[size_t(node)]; }
+  [[nodiscard]] double own_inertia(int node) const { return gyration2_[size_t(node)] * own_mass(node); }
+  /// Nodes of each pad; empty without a rig.
+  [[nodiscard]] const std::vector<std::vector<int>>& pad_nodes() const { return pad_nodes_; }
   /// Of nodes that are neither tied nor clamped, scaled [kg].
   [[nodiscard]] double free_mass() const;
 
@@ -109,11 +120,13 @@ class Model {
   std::optional<FibreInertia> fibre_inertia_;
   std::vector<double> mass_, inertia_, inverse_mass_, inverse_inertia_;
   std::vector<int> guided_;
+  std::vector<std::vector<int>> pad_nodes_;  ///< of each pad; empty without a rig
   std::vector<double> bearing_mass_;  ///< what bears stiffness: a tied node's is its share of its pad [kg]
   std::vector<double> mobility_, turning_mobility_;  ///< 1 / bearing mass and inertia; 0 where held [padded]
   std::vector<double> own_mass_, gyration2_;         ///< of all nodes, held ones too [kg], [m^2]
   double selective_rate_ = 0;  ///< highest of a node that does not touch, with selective scaling [1/s]
   double stable_dt_ = 0, selective_dt_ = 0, alpha_ = 0;
+  double servo_dt_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace drapeplan

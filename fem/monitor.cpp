@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <sstream>
 
 namespace drapeplan {
@@ -10,8 +11,27 @@ namespace {
 /// Far beyond what any carbon fibre bears (2 %): what comes here is numerics, which books alone cannot see.
 constexpr double kTornStrain = 0.2;
 
+/// Its sine is 0.98: up to there the shell tabulates the law of shear, which goes on linearly in the sine.
+const double kTabulatedShear = std::asin(0.98);
+
 /// Of the largest book. Booked and stored work differ by the square of the step; measured below 1e-4.
 constexpr double kGivenShare = 0.01;
+
+/// By which stored energy may exceed what was booked, of the largest book: where all of it rings at the
+/// highest frequency, on contact springs of a hundred times the default, they differ by more than 1 %.
+constexpr double kHeldShare = 0.05;
+
+/// How far a place is off the part of the x-y plane that the mold covers, in x or y [m].
+double beyond(const Extent& extent, double x, double y) {
+  return std::max(
+      {extent.lower.x() - x, x - extent.upper.x(), extent.lower.y() - y, y - extent.upper.y(), 0.0});
+}
+
+std::string millimetres(double length) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g mm", 1e3 * length);
+  return text;
+}
 
 /// A ply this fast stands still [m/s]: books below its kinetic energy are round-off, which has no sign.
 constexpr double kStill = 1e-9;
@@ -21,6 +41,14 @@ double largest_energy(const Model& model, const State& state) {
 }
 
 }  // namespace
+
+Monitor::Monitor(const Model& model) : model_(model) {
+  half_ = model.flat_state(0);  // takes its room
+  if (!model.scene().mold) return;
+  const State& flat = half_;
+  for (size_t n = 0; n < size_t(model.node_count()); ++n)
+    overhang_ = std::max(overhang_, beyond(model.scene().mold->extent(), flat.x.x[n], flat.x.y[n]));
+}
 
 Energies energies(const Model& model, const State& state) {
   const auto work = [&state](Book book) { return state.work[size_t(book)]; };
@@ -33,6 +61,25 @@ Energies energies(const Model& model, const State& state) {
   e.damping = -work(Book::damping);
   e.constraint = -work(Book::interlink) - work(Book::stop) - work(Book::release);
   return e;
+}
+
+/// Books end half a step before the state: stored energy is taken there, too. In the first steps of a run the
+/// two still differ by a share of themselves.
+bool Monitor::holds_more(const State& state, double limit) {
+  constexpr std::int64_t kBooksSettled = 200;
+  if (state.step < kBooksSettled) return false;
+  half_ = state;
+  const auto back = [&state](VectorField& place, const VectorField& rate) {
+    for (size_t n = 0; n < place.x.size(); ++n) {
+      place.x[n] -= 0.5 * state.dt_before * rate.x[n];
+      place.y[n] -= 0.5 * state.dt_before * rate.y[n];
+      place.z[n] -= 0.5 * state.dt_before * rate.z[n];
+    }
+  };
+  back(half_.x, state.v);
+  back(half_.d, state.w);
+  const ShellEnergy stored = model_.shell().stored_energy(half_);
+  return stored.fabric + stored.hourglass > limit;
 }
 
 bool Monitor::look(State& state, RunReport& report) {
@@ -49,7 +96,18 @@ bool Monitor::look(State& state, RunReport& report) {
   // energy out of it, and the books of that still close.
   const double largest = largest_energy(model_, state);
   if (now.internal < -kGivenShare * largest)
-    return fail(state, "the ply gives energy that it never took: the step is unstable", report);
+    return fail(
+        state,
+        "the ply gives energy that it never took: the step is unstable; lower step_safety or step_interval",
+        report);
+  if (holds_more(state, now.internal + kHeldShare * largest))
+    return fail(
+        state,
+        "the ply holds energy that it never took: the step was unstable; lower step_safety or step_interval",
+        report);
+  if (std::min(now.contact, now.friction) < -kGivenShare * largest)
+    return fail(state, "contact gives energy that it never took: the step is unstable; lower step_safety",
+                report);
   if (state.work[size_t(Book::added_mass)] > kGivenShare * largest)
     return fail(state, "mass added to fibres gives energy that it never took: lower selective_scaling",
                 report);
@@ -61,6 +119,7 @@ bool Monitor::look(State& state, RunReport& report) {
     }
     return fail(state, "not finite at node " + std::to_string(n), report);
   }
+  double shear = 0;
   model_.shell().strains(state, strains_);
   for (const auto* list : {&strains_.warp_strain, &strains_.weft_strain}) {
     for (const double strain : *list) {
@@ -70,13 +129,28 @@ bool Monitor::look(State& state, RunReport& report) {
   }
   if (!(std::max(record.fibre_strain, record.fibre_compression) <= kTornStrain))
     return fail(state, "a fibre is torn or the step is unstable", report);
-  if (model_.scene().mold) note_penetration(state);
+  for (const double angle : strains_.shear) shear = std::max(shear, std::abs(angle));
+  if (!(shear <= kTabulatedShear))
+    return fail(state, "an element is sheared by more than 78.5 deg, where the law of shear ends", report);
+  if (!model_.scene().mold) return true;
+  note_penetration(state);
+  const double thickness = model_.scene().fabric.thickness;
+  // A gap is never negative: a ply inside the mold would look perfectly draped.
+  if (record.penetration > thickness)
+    return fail(
+        state,
+        "the ply came " + millimetres(record.penetration) + " inside the mold: more than its thickness",
+        report);
+  if (slid_ > overhang_ + thickness)
+    return fail(state, "the ply slid " + millimetres(slid_) + " over the mold's edge, where its extent ends",
+                report);
   return true;
 }
 
 // The distance to the tangent plane at the vertical foot (5e-8 m on the seed's mold) tells who is worth
 // asking.
-void Monitor::note_penetration(State& state) const {
+void Monitor::note_penetration(State& state) {
+  slid_ = 0;
   const Mold& mold = *model_.scene().mold;
   const double surface = 0.5 * model_.scene().fabric.thickness;
   double z[kChunk], zx[kChunk], zy[kChunk];
@@ -86,6 +160,7 @@ void Monitor::note_penetration(State& state) const {
     for (int k = 0; k < chunk; ++k) {
       const auto n = size_t(first + k);
       const double above = (state.x.z[n] - z[k]) / std::sqrt(1 + zx[k] * zx[k] + zy[k] * zy[k]);
+      if (surface - above > 0) slid_ = std::max(slid_, beyond(mold.extent(), state.x.x[n], state.x.y[n]));
       if (!(surface - above > state.record.penetration)) continue;  // not defined here, or no worse
       const double distance = mold.closest({state.x.x[n], state.x.y[n], state.x.z[n]}).signed_distance;
       state.record.penetration = std::max(state.record.penetration, surface - distance);

@@ -9,7 +9,7 @@ namespace drapeplan {
 
 class Monitor {
  public:
-  explicit Monitor(const Model& model) : model_(model) {}
+  explicit Monitor(const Model& model);
 
   /// Looks at a state and notes the worst in its record. Returns false, with the reason in the report, if the
   /// run cannot go on.
@@ -22,11 +22,15 @@ class Monitor {
   void close(State& state, RunReport& report) const;
 
  private:
-  void note_penetration(State& state) const;
+  void note_penetration(State& state);
+  bool holds_more(const State& state, double limit);
   static bool fail(const State& state, const std::string& what, RunReport& report);
 
   const Model& model_;
-  Snapshot strains_;  ///< kept, so that looking allocates nothing after the first time
+  double overhang_ = 0;  ///< of the flat start over the mold's edge [m]
+  double slid_ = 0;      ///< of nodes that touch at the last look, over it [m]
+  State half_;           ///< half a step before what is looked at; kept like strains_
+  Snapshot strains_;     ///< kept, so that looking allocates nothing after the first time
 };
 
 /// Energies of a state, without the figures that need a history.

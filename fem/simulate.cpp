@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "fem/contact.hpp"
 #include "fem/monitor.hpp"
 #include "fem/stable_step.hpp"
 #include "fem/workspace.hpp"
@@ -27,14 +28,18 @@ double start_height(const Model& model, const RunRequest& request) {
   return request.schedule->paths.front().front().z - model.scene().rig->joint_offset;
 }
 
-/// The mold is asked vertically: a flat ply above all heights is outside, whatever the slope.
+/// The mold is asked vertically, with its slope: a ply that starts inside it would be thrown out.
 void refuse_start_in_mold(const Model& model, const State& state) {
+  constexpr double kSlack = 0.02;  // of the thickness: round-off, and what a ply's weight sinks in
+  const double thickness = model.scene().fabric.thickness;
   for (size_t n = 0; n < size_t(model.node_count()); ++n) {
-    const double height = model.scene().mold->height(state.x.x[n], state.x.y[n]);
-    const double thickness = model.scene().fabric.thickness;
-    if (state.x.z[n] < height - thickness) {  // false where the mold is not defined
+    const Jet jet = model.scene().mold->jet(state.x.x[n], state.x.y[n]);
+    const double slope = std::min(std::hypot(jet.zx, jet.zy), kSteepestContact);
+    const double stretch = std::hypot(1.0, slope);
+    const double inside = 0.5 * thickness - (state.x.z[n] - jet.z) / stretch;
+    if (inside > kSlack * thickness) {  // false where the mold is not defined
       throw std::invalid_argument(
-          "simulate: the flat ply starts " + std::to_string(1e3 * (height - state.x.z[n])) +
+          "simulate: the flat ply's underside starts " + std::to_string(1e3 * inside) +
           " mm below the mold at x = " + std::to_string(state.x.x[n]) +
           " m, y = " + std::to_string(state.x.y[n]) + " m: check its place and the start height");
     }
@@ -80,7 +85,7 @@ void choose_step(const Model& model, const Clock& clock, State& state, Workspace
       model.fibre_inertia()->aim(state);
       work.inertia.ready = false;
     }
-    state.dt = options.step_safety * state.stable_dt;
+    state.dt = std::min(options.step_safety * state.stable_dt, model.servo_dt());
     if (state.step == 0) state.dt_before = state.dt;
   }
   state.dt = std::min(state.dt, clock.end - state.time);
@@ -147,13 +152,17 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   result.final = take_snapshot(model, state, drive);
   if (running) monitor.close(state, report);
   if (running && clock.ended(state) && frame < frames) request.observe(result.final);
-  if (!work.rig.converged && report.status == RunStatus::done) {
-    report.status = RunStatus::diverged;
-    report.message = "interlinks could not be kept at their length";
-  }
   if (report.message.empty() && !std::isfinite(state.time)) {
     report.status = RunStatus::diverged;
-    report.message = "the stable step is not finite, after step " + std::to_string(state.step);
+    report.message = "the stable step is not finite: the steps before were unstable; after step " +
+                     std::to_string(state.step);
+  }
+  if (!work.rig.converged && report.status == RunStatus::done) {
+    report.status = RunStatus::diverged;
+    report.message =
+        "interlinks could not be kept at their length: pads are too fast, or the step is unstable; seen at "
+        "step " +
+        std::to_string(state.step) + ", t = " + std::to_string(state.time) + " s";
   }
   if (report.message.empty()) {
     const bool paused = !rests && !clock.ended(state);

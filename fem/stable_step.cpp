@@ -23,7 +23,22 @@ using Modes = Eigen::VectorXd;
 class Tangent {
  public:
   Tangent(const Model& model, const State& state, double rate)
-      : model_(model), state_(state), trial_(state), work_(model), nodes_(model.node_count()), rate_(rate) {}
+      : model_(model),
+        state_(state),
+        trial_(state),
+        work_(model),
+        nodes_(model.node_count()),
+        rate_(rate),
+        mobility_(model.inverse_mass()),
+        turning_mobility_(model.inverse_inertia()) {
+    for (size_t g = 0; g < model.pad_nodes().size(); ++g) {
+      if (!state.pads[g].released) continue;
+      for (const int node : model.pad_nodes()[g]) {
+        mobility_[size_t(node)] = 1 / model.own_mass(node);
+        turning_mobility_[size_t(node)] = 1 / model.own_inertia(node);
+      }
+    }
+  }
 
   [[nodiscard]] Eigen::Index size() const { return 6 * Eigen::Index(nodes_); }
 
@@ -36,10 +51,8 @@ class Tangent {
   }
 
  private:
-  [[nodiscard]] double weight(Eigen::Index n) const { return std::sqrt(model_.inverse_mass()[size_t(n)]); }
-  [[nodiscard]] double turn_weight(Eigen::Index n) const {
-    return std::sqrt(model_.inverse_inertia()[size_t(n)]);
-  }
+  [[nodiscard]] double weight(Eigen::Index n) const { return std::sqrt(mobility_[size_t(n)]); }
+  [[nodiscard]] double turn_weight(Eigen::Index n) const { return std::sqrt(turning_mobility_[size_t(n)]); }
 
   void add_forces(const VectorField& force, Modes& out) const {
     for (Eigen::Index n = 0; n < nodes_; ++n) {
@@ -93,6 +106,7 @@ class Tangent {
   Workspace work_;
   int nodes_;
   double rate_;
+  std::vector<double> mobility_, turning_mobility_;  ///< 1 / mass and inertia of nodes; 0 where held
 };
 
 /// Largest eigenvalue, by Arnoldi's method: friction makes the tangent unsymmetric.
@@ -138,6 +152,7 @@ double stable_step(const Model& model, State& state, StepScratch& scratch) {
       store(load(&sum.rotation[n]) * slack + load(&others.rotation[n]), &sum.rotation[n]);
       store(load(&others.damping[n]), &sum.damping[n]);
     }
+    model.bear_released(state, sum);
     const double rate = model.highest_rate(sum);
     model.lighten(sum, rate, state.lightness);
     if (round > 1) continue;
@@ -150,6 +165,8 @@ double stable_step(const Model& model, State& state, StepScratch& scratch) {
 double true_stable_step(const Model& model, const State& state) {
   Scene undamped = model.scene();  // viscous stress changes with strain as well, but is no stiffness
   undamped.options.bulk_viscosity = 0;
+  if (undamped.rig)
+    undamped.rig->actuator_stiffness = 0;  // no term; the longer step would be too long for it
   undamped.options.precision =
       Precision::double_lanes;  // differences of forces, over less than floats tell apart
   const Model elastic(std::move(undamped));

@@ -11,9 +11,9 @@ namespace drapeplan {
 double stable_step(const Model& model, State& state, StepScratch& scratch);
 
 /// True stable step of the linearised system at a state [s]: 2 / largest frequency by Lanczos' method, with
-/// the stiffness by central differences of all forces. Pads and clamped nodes are held. Costs about a hundred
-/// evaluations of all forces: for tests and studies. From above: the largest frequency is approached from
-/// below, to 0.1 % or better.
+/// the stiffness by central differences of all forces. Pads and clamped nodes are held, those that pads have
+/// let go are free. Costs about a hundred evaluations of all forces: for tests and studies. From above: the
+/// largest frequency is approached from below, to 0.1 % or better.
 double true_stable_step(const Model& model, const State& state);
 
 }  // namespace drapeplan

@@ -1,7 +1,10 @@
 #include "planner/case_checks.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <set>
 
 #include "planner/json_text.hpp"
@@ -189,10 +192,42 @@ void check_rates(CaseReader& reader, const std::string& mode, const CurveFields&
   }
 }
 
+/// A ply that is mapped is measured there, with a warning; one that is only laid down must lie on the mold.
+void check_on_mold(const CaseFields& fields, CaseReader& reader) {
+  const Case& c = fields.value;
+  if (!fields.mold || !fields.material || c.mapping || !reader.good("/mold/extent")) return;
+  const Extent& extent = fields.mold->extent;
+  double beyond = 0;
+  for (const Eigen::Vector2d& corner : corners_of(c.ply)) {
+    const Eigen::Vector2d xy = c.ply.position + Eigen::Rotation2Dd(c.ply.angle) * corner;
+    beyond = std::max({beyond, (extent.lower - xy).maxCoeff(), (xy - extent.upper).maxCoeff()});
+  }
+  if (beyond > kSlack)
+    reader.fail("/mold/extent", "the flat ply reaches " + format_quantity(beyond, Dimension::length) +
+                                    " beyond it: there is no mold under its edge");
+}
+
+/// Curves are sampled over all that they reach: what no fibre and no fabric can do is a wrong unit.
+void check_reach(CaseReader& reader, const std::string& mode, const CurveFields& fields) {
+  const bool angle = mode == "shear";
+  const double most = angle ? 0.5 * std::numbers::pi : 1.0;
+  const auto check = [&](const std::string& pointer, const Curve& curve) {
+    if (!reader.good(pointer) || curve.strain.empty() || curve.strain.back() <= most) return;
+    reader.fail(pointer, angle ? "reaches beyond a shear of 90 deg" : "reaches beyond a strain of 100 %");
+  };
+  const std::string pointer = "/material/" + mode;
+  check(pointer + "/points", fields.curve);
+  for (size_t k = 0; k < fields.rates.size(); ++k)
+    check(pointer + "/rates/" + std::to_string(k) + "/points", fields.rates[k].curve);
+}
+
 void check_material(const CaseFields& fields, CaseReader& reader) {
   if (!fields.material) return;
   const MaterialFields& material = *fields.material;
   if (material.law == 0) {
+    check_reach(reader, "tension", material.tension);
+    check_reach(reader, "compression", material.compression);
+    check_reach(reader, "shear", material.shear);
     check_rates(reader, "tension", material.tension);
     check_rates(reader, "compression", material.compression);
     check_rates(reader, "shear", material.shear);
@@ -220,6 +255,7 @@ void check_case(const CaseFields& fields, CaseReader& reader) {
                 "needs a mold and no grippers; with grippers the schedule says where the ply starts");
   }
   check_mapping(fields, reader);
+  check_on_mold(fields, reader);
   check_on_ply(reader, "/schedule/wave/start", c.ply, c.schedule.wave_start);
   if (reader.good("/fem")) check_cells(reader, "/fem/mesh_size", c.ply, fields.fem.mesh_size);
   for (const auto& [name, options] : c.fidelities) {

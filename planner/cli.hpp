@@ -39,6 +39,7 @@ void add_simulate(CLI::App& program, Action& action);
 void add_map(CLI::App& program, Action& action);
 void add_reach(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
+void add_stress(CLI::App& program, Action& action);
 void add_study(CLI::App& program, Action& action);
 
 void add_common_options(CLI::App& verb, CommonOptions& options);
