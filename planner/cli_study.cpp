@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "planner/cli.hpp"
 #include "planner/drape_problem.hpp"
+#include "planner/plan.hpp"
 #include "planner/statistics.hpp"
 #include "planner/study_files.hpp"
 #include "planner/study_runner.hpp"
@@ -25,6 +27,7 @@ struct StudyOptions {
   int schedules = 24;
   int repeats = 3;
   bool resume = false;
+  std::string run;  ///< folder of a plan
 
   [[nodiscard]] bool wants(const char* part) const {
     return std::find(parts.begin(), parts.end(), part) != parts.end();
@@ -98,15 +101,15 @@ void sweep(StudyWork& work, Study& study) {
 /// Every fidelity of the case and every combination of the sweep, named ones first; without those that turn
 /// the material's rates on or off against the reporting fidelity: other physics, not another accuracy.
 std::vector<RankRow> rank_rows(const StudySubject& subject) {
-  std::vector<RankRow> named{{"fem", {}, 0, 0, 0, {}, 0}}, others;
+  std::vector<RankRow> named{{.name = "fem"}}, others;
   const bool rates = subject.changes_of(kReport).count("fem.rates") > 0;
   for (const StudyPoint& point : sweep_points(subject)) {
     const std::string fidelity = "fidelity ";
     if ((point.settings.count("fem.rates") > 0) != rates) continue;
     if (point.curve.starts_with(fidelity)) {
-      named.push_back({point.curve.substr(fidelity.size()), point.settings, 0, 0, 0, {}, 0});
+      named.push_back({.name = point.curve.substr(fidelity.size()), .settings = point.settings});
     } else if (point.curve == "combination") {
-      others.push_back({"", point.settings, 0, 0, 0, {}, 0});
+      others.push_back({.name = "", .settings = point.settings});
     }
   }
   named.insert(named.end(), others.begin(), others.end());
@@ -117,6 +120,12 @@ std::vector<double> objectives(const std::vector<StudyRun>& runs) {
   std::vector<double> values;
   for (const StudyRun& run : runs) values.push_back(run.valid ? run.objective : std::nan(""));
   return values;
+}
+
+double median_of(const std::vector<StudyRun>& runs, double StudyRun::*member) {
+  std::vector<double> values;
+  for (const StudyRun& run : runs) values.push_back(run.*member);
+  return median(values);
 }
 
 /// The reference of the ranks is the reporting fidelity: it decides what is claimed.
@@ -130,9 +139,8 @@ void rank(StudyWork& work, Study& study) {
   for (const RankRow& row : study.ranks) settings.push_back(row.settings);
   const std::vector<std::vector<StudyRun>> runs = run_all(work, "ranks", settings, schedules);
   for (size_t k = 0; k < study.ranks.size(); ++k) {
-    std::vector<double> times;
-    for (const StudyRun& run : runs[k + 1]) times.push_back(run.wall_seconds);
-    study.ranks[k].wall_seconds = median(times);
+    study.ranks[k].wall_seconds = median_of(runs[k + 1], &StudyRun::wall_seconds);
+    study.ranks[k].cpu_seconds = median_of(runs[k + 1], &StudyRun::cpu_seconds);
     study.ranks[k].objectives = objectives(runs[k + 1]);
   }
   rank_against(objectives(runs[0]), study.ranks);
@@ -160,6 +168,32 @@ void measure_noise(StudyWork& work, Study& study) {
   }
 }
 
+/// The search of a run directory of `plan`, which is made now if none is named; beside it, as many evenly
+/// spread schedules as are ranked.
+void trace_search(StudyWork& work, Study& study, const std::filesystem::path& folder) {
+  const Case whole = work.subject.whole();
+  const std::string fidelity = whole.fidelities.count("search") > 0 ? "search" : kReport;
+  std::filesystem::path run = work.options.run;
+  if (run.empty()) {
+    run = folder / "plan";
+    const DrapeProblem problem(whole);
+    (void)plan(problem, {run, work.options.resume, work.options.common.threads}, {});
+  }
+  study.searches.push_back(search_trace(read_evaluations((run / "evaluations.jsonl").string()), fidelity));
+  SearchTrace even{"evenly spread schedules", {}, {}, {}};
+  double seconds = 0, best = std::numeric_limits<double>::infinity();
+  const std::vector<Schedule> schedules = work.subject.schedules(work.options.schedules);
+  for (const StudyRun& one :
+       run_all(work, "search", {work.subject.changes_of(fidelity)}, schedules).front()) {
+    seconds += one.wall_seconds;
+    if (one.valid) best = std::min(best, one.objective);
+    even.evaluations.push_back(double(even.evaluations.size() + 1));
+    even.seconds.push_back(seconds);
+    even.best.push_back(best);
+  }
+  study.searches.push_back(even);
+}
+
 Study study_case(const StudySubject& subject, StudyRunner& runner, const StudyOptions& options,
                  const std::filesystem::path& folder) {
   StudyWork work{subject, runner, options};
@@ -172,8 +206,7 @@ Study study_case(const StudySubject& subject, StudyRunner& runner, const StudyOp
   if (options.wants("sweep")) sweep(work, study);
   if (options.wants("noise") && study.drapes) measure_noise(work, study);
   if (options.wants("ranks") && study.drapes) rank(work, study);
-  if (options.wants("search"))
-    study.searches = study_search(subject, folder / "search", options.common.threads);
+  if (options.wants("search") && study.drapes) trace_search(work, study, folder);
   return study;
 }
 
@@ -223,6 +256,10 @@ void add_study(CLI::App& program, Action& action) {
             ->check(CLI::Range(4, 1000));
         verb.add_option("--repeats", options.repeats, "of short runs; the median time counts (default: 3)")
             ->check(CLI::Range(1, 100));
+        verb.add_option("--run", options.run,
+                        "run directory of `plan` whose search is shown (default: it is run now)")
+            ->type_name("DIR")
+            ->check(CLI::ExistingDirectory);
         verb.add_flag("--resume", options.resume,
                       "runs that the folder's study.jsonl holds are not done again");
       },

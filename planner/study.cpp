@@ -1,5 +1,7 @@
 #include "planner/study.hpp"
 
+#include <time.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -102,11 +104,20 @@ void add_report(const RunReport& report, std::int64_t elements, StudyRun& run) {
   if (!run.valid) run.reason = report.message;
 }
 
+/// Processor time that the calling thread has used [s].
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
 StudyRun run_drape(const DrapeProblem& problem, const Schedule& schedule,
                    const std::vector<std::optional<Foot>>& where) {
   const Mesh& mesh = problem.model(kReport).scene().mesh;
+  const double clock = thread_seconds();
   const Drape drape = problem.run(schedule, kReport);
   StudyRun run;
+  run.cpu_seconds = thread_seconds() - clock;
   add_report(drape.run.report, mesh.element_count(), run);
   run.valid = drape.score.valid;
   run.reason = drape.score.reason;
@@ -136,8 +147,10 @@ StudyRun run_free(const Case& value) {
   const Mesh& mesh = model.scene().mesh;
   RunRequest request;
   request.duration = value.duration;
+  const double clock = thread_seconds();
   const RunResult result = simulate(model, request);
   StudyRun run;
+  run.cpu_seconds = thread_seconds() - clock;
   add_report(result.report, mesh.element_count(), run);
   if (!run.valid) return run;
   const Snapshot start = take_snapshot(model, model.flat_state(value.start_height), RigDrive{});
@@ -319,15 +332,9 @@ std::string rounded_length(double value) {
   return text;
 }
 
-double StudyPoint::wall_seconds() const {
+double StudyPoint::mean(double StudyRun::*member) const {
   double sum = 0;
-  for (const StudyRun& run : runs) sum += run.wall_seconds;
-  return sum / double(std::max<size_t>(runs.size(), 1));
-}
-
-double StudyPoint::element_updates() const {
-  double sum = 0;
-  for (const StudyRun& run : runs) sum += run.element_updates;
+  for (const StudyRun& run : runs) sum += run.*member;
   return sum / double(std::max<size_t>(runs.size(), 1));
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <utility>
@@ -10,6 +9,7 @@
 
 #include "fem/schedule.hpp"
 #include "planner/case.hpp"
+#include "planner/evaluation_log.hpp"
 
 namespace drapeplan {
 
@@ -21,6 +21,7 @@ struct StudyRun {
   bool valid = false;
   std::string reason;  ///< why it is not
   double wall_seconds = 0;
+  double cpu_seconds = 0;  ///< of the one thread that runs it: the wall time on a core that nobody else uses
   double element_updates = 0;
   double steps = 0, dt = 0;  ///< mean step [s]
   double balance_error = 0, kinetic_ratio = 0;
@@ -86,8 +87,7 @@ struct StudyPoint {
 
   [[nodiscard]] bool valid() const { return !error.empty(); }
   /// Means over the runs.
-  [[nodiscard]] double wall_seconds() const;
-  [[nodiscard]] double element_updates() const;
+  [[nodiscard]] double mean(double StudyRun::*member) const;
 };
 
 /// Settings of a sweep: the named fidelities, every knob around the `fem` section, then combinations of the
@@ -102,11 +102,11 @@ Settings reference_settings(const StudySubject& subject, double refinement);
 
 /// What ranking found for one setting.
 struct RankRow {
-  std::string name;  ///< of a fidelity; empty for a combination
-  Settings settings;
-  double wall_seconds = 0;  ///< of one run, median
+  std::string name = {};  ///< of a fidelity; empty for a combination
+  Settings settings = {};
+  double wall_seconds = 0, cpu_seconds = 0;  ///< of one run, median
   double spearman = 0, kendall = 0;
-  std::vector<double> objectives;  ///< NaN where a run failed
+  std::vector<double> objectives = {};  ///< NaN where a run failed
   int compared = 0;                ///< schedules that both could score
 };
 
@@ -143,17 +143,15 @@ struct ReachRow {
 /// Best objective of a search so far, after so many evaluations and so much time.
 struct SearchTrace {
   std::string name;
-  std::vector<double> evaluations, seconds, best;
+  std::vector<double> evaluations, seconds, best;  ///< seconds: sum of the run times of all evaluations
 };
 
 std::vector<MappingRow> study_mapping(const StudySubject& subject, int repeats);
 std::vector<ReachRow> study_reach(const StudySubject& subject, int repeats);
-/// The staged search of `plan` and, with as many evaluations at the fidelity of its last stage, schedules
-/// that fill the families evenly. Objectives of different fidelities are not comparable: traces are of the
-/// last stage's.
-/// @param log  folder of the evaluations' log, which is resumed.
-std::vector<SearchTrace> study_search(const StudySubject& subject, const std::filesystem::path& log,
-                                      int threads);
+/// The search of a plan, from the lines of its log: best objective at the fidelity of its last stage.
+/// Objectives of different fidelities are not comparable, but all evaluations count as effort.
+/// @param fidelity  of that stage.
+SearchTrace search_trace(const std::vector<Evaluation>& evaluations, const std::string& fidelity);
 
 /// All that a study found; parts that were not asked for are empty.
 struct Study {

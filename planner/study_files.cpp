@@ -67,19 +67,12 @@ std::vector<Column> columns_of(const Study& study) {
           {"shear_deg", "shear r.m.s. [deg]", 1}};
 }
 
-/// Means over the runs of what a single run counts.
-double mean_of(const StudyPoint& point, double StudyRun::*member) {
-  double sum = 0;
-  for (const StudyRun& run : point.runs) sum += run.*member;
-  return sum / double(std::max<size_t>(point.runs.size(), 1));
-}
-
 std::vector<int> front_of(const Study& study, const std::string& error) {
   std::vector<double> cost, errors;
   for (const StudyPoint& point : study.points) {
     const bool numerical = std::all_of(point.settings.begin(), point.settings.end(),
                                        [](const auto& s) { return s.first.starts_with("fem."); });
-    cost.push_back(point.valid() && numerical ? point.wall_seconds()
+    cost.push_back(point.valid() && numerical ? point.mean(&StudyRun::cpu_seconds)
                                               : std::numeric_limits<double>::infinity());
     errors.push_back(error_of(point, error));
   }
@@ -89,7 +82,7 @@ std::vector<int> front_of(const Study& study, const std::string& error) {
 std::string reference_text(const Study& study) {
   std::string text = "Reference: " + words(study.reference) + ", all else as in the case";
   double seconds = 0;
-  for (const StudyRun& run : study.reference_runs) seconds += run.wall_seconds;
+  for (const StudyRun& run : study.reference_runs) seconds += run.cpu_seconds;
   text += "; " + short_number(seconds / double(std::max<size_t>(study.reference_runs.size(), 1))) +
           " s per run.\n\nWhat is left in it, from the sweeps: ";
   std::string rest;
@@ -107,7 +100,7 @@ std::string reference_text(const Study& study) {
 
 std::string points_text(const Study& study) {
   const std::vector<Column> columns = columns_of(study);
-  std::vector<std::string> cells{"curve", "setting", "wall [s]", "10^6 updates", "steps", "step [us]"};
+  std::vector<std::string> cells{"curve", "setting", "time [s]", "10^6 updates", "steps", "step [us]"};
   for (const Column& column : columns) cells.push_back(column.head);
   cells.insert(cells.end(), {"balance", "kinetic ratio", "front"});
   std::string text = head(cells);
@@ -122,13 +115,13 @@ std::string points_text(const Study& study) {
       text += row(cells);
       continue;
     }
-    for (const double value : {point.wall_seconds(), 1e-6 * point.element_updates(),
-                               mean_of(point, &StudyRun::steps), 1e6 * mean_of(point, &StudyRun::dt)})
+    for (const double value :
+         {point.mean(&StudyRun::cpu_seconds), 1e-6 * point.mean(&StudyRun::element_updates),
+          point.mean(&StudyRun::steps), 1e6 * point.mean(&StudyRun::dt)})
       cells.push_back(short_number(value));
     for (const Column& column : columns)
       cells.push_back(short_number(column.factor * error_of(point, column.name)));
-    for (const double value :
-         {mean_of(point, &StudyRun::balance_error), mean_of(point, &StudyRun::kinetic_ratio)})
+    for (const double value : {point.mean(&StudyRun::balance_error), point.mean(&StudyRun::kinetic_ratio)})
       cells.push_back(short_number(value));
     cells.push_back(std::find(front.begin(), front.end(), int(k)) == front.end() ? "" : "x");
     text += row(cells);
@@ -137,7 +130,7 @@ std::string points_text(const Study& study) {
 }
 
 std::string cheapest_text(const Study& study) {
-  std::string text = head({"error below [%]", "cheapest setting", "wall [s]", "error [%]"});
+  std::string text = head({"error below [%]", "cheapest setting", "time [s]", "error [%]"});
   for (const double limit : {30.0, 10.0, 5.0, 3.0, 2.0, 1.0, 0.3, 0.1}) {
     const StudyPoint* best = nullptr;
     for (const int k : front_of(study, "relative")) {
@@ -147,8 +140,9 @@ std::string cheapest_text(const Study& study) {
     if (best == nullptr) {
       text += row({short_number(limit), "none", "", ""});
     } else {
-      text += row({short_number(limit), words(best->settings), short_number(best->wall_seconds()),
-                   short_number(1e2 * error_of(*best, "relative"))});
+      text +=
+          row({short_number(limit), words(best->settings), short_number(best->mean(&StudyRun::cpu_seconds)),
+               short_number(1e2 * error_of(*best, "relative"))});
     }
   }
   return text;
@@ -169,9 +163,9 @@ std::string orders_text(const Study& study) {
 }
 
 std::string ranks_text(const Study& study) {
-  std::string text = head({"fidelity", "setting", "wall [s]", "Spearman", "Kendall", "schedules"});
+  std::string text = head({"fidelity", "setting", "time [s]", "Spearman", "Kendall", "schedules"});
   for (const RankRow& r : study.ranks)
-    text += row({r.name, words(r.settings), short_number(r.wall_seconds), fixed(r.spearman, 3),
+    text += row({r.name, words(r.settings), short_number(r.cpu_seconds), fixed(r.spearman, 3),
                  fixed(r.kendall, 3), std::to_string(r.compared)});
   return text;
 }
@@ -232,7 +226,7 @@ ChartSeries& series_of(Chart& chart, const std::string& name) {
 
 Chart work_chart(const Study& study, const std::string& title, const std::string& error) {
   constexpr double kWidth = 820, kHeight = 460;
-  Chart chart{title + ", " + study.case_name, "wall time of one run [s]", "error: " + error, {}};
+  Chart chart{title + ", " + study.case_name, "run time on one core [s]", "error: " + error, {}};
   chart.log_x = chart.log_y = chart.side_legend = true;
   chart.width = kWidth;
   chart.height = kHeight;
@@ -242,7 +236,7 @@ Chart work_chart(const Study& study, const std::string& title, const std::string
 Chart work_precision(const Study& study, const Column& column) {
   Chart chart = work_chart(study, "Error against run time", column.head);
   const auto place = [&](const StudyPoint& point) {
-    return Eigen::Vector2d(point.wall_seconds(), column.factor * error_of(point, column.name));
+    return Eigen::Vector2d(point.mean(&StudyRun::cpu_seconds), column.factor * error_of(point, column.name));
   };
   for (const StudyPoint& point : study.points) {
     if (point.valid()) series_of(chart, point.curve).points.push_back(place(point));
@@ -259,14 +253,15 @@ Chart knob_chart(const Study& study) {
   for (const StudyPoint& point : study.points) {
     const auto error = point.knob_error.find("relative");
     if (point.settings.size() != 1 || error == point.knob_error.end() || !(error->second > 0)) continue;
-    series_of(chart, point.curve).points.emplace_back(point.wall_seconds(), 1e2 * error->second);
+    series_of(chart, point.curve)
+        .points.emplace_back(point.mean(&StudyRun::cpu_seconds), 1e2 * error->second);
   }
   return chart;
 }
 
 Chart search_chart(const Study& study, bool by_time) {
   Chart chart{"Best objective of the search, " + study.case_name,
-              by_time ? "wall time [s]" : "evaluations",
+              by_time ? "run time of all evaluations [s]" : "evaluations",
               "best objective so far",
               {}};
   for (const SearchTrace& trace : study.searches) {
@@ -280,14 +275,14 @@ Chart search_chart(const Study& study, bool by_time) {
 
 Chart rank_chart(const Study& study) {
   Chart chart{"How settings rank " + std::to_string(study.schedules) + " schedules, " + study.case_name,
-              "wall time of one run [s]",
+              "run time on one core [s]",
               "Spearman's rank correlation",
               {}};
   chart.log_x = true;
   ChartSeries named{.name = "fidelities of the case", .points = {}, .dots = true, .marks = true},
       others{.name = "combinations", .points = {}, .dots = true, .marks = true};
   for (const RankRow& r : study.ranks)
-    (r.name.empty() ? others : named).points.emplace_back(r.wall_seconds, r.spearman);
+    (r.name.empty() ? others : named).points.emplace_back(r.cpu_seconds, r.spearman);
   chart.series = {named, others};
   return chart;
 }
@@ -300,12 +295,13 @@ json settings_json(const Settings& settings) {
 
 json point_json(const StudyPoint& point) {
   json out{{"curve", point.curve}, {"settings", settings_json(point.settings)}, {"valid", point.valid()}};
-  out["wall_seconds"] = finite(point.wall_seconds());
-  out["element_updates"] = finite(point.element_updates());
-  out["steps"] = mean_of(point, &StudyRun::steps);
-  out["dt"] = mean_of(point, &StudyRun::dt);
-  out["balance_error"] = finite(mean_of(point, &StudyRun::balance_error));
-  out["kinetic_ratio"] = finite(mean_of(point, &StudyRun::kinetic_ratio));
+  out["wall_seconds"] = finite(point.mean(&StudyRun::wall_seconds));
+  out["cpu_seconds"] = finite(point.mean(&StudyRun::cpu_seconds));
+  out["element_updates"] = finite(point.mean(&StudyRun::element_updates));
+  out["steps"] = point.mean(&StudyRun::steps);
+  out["dt"] = point.mean(&StudyRun::dt);
+  out["balance_error"] = finite(point.mean(&StudyRun::balance_error));
+  out["kinetic_ratio"] = finite(point.mean(&StudyRun::kinetic_ratio));
   for (const StudyRun& run : point.runs) {
     if (!run.valid) out["reason"] = run.reason;
   }
@@ -315,16 +311,17 @@ json point_json(const StudyPoint& point) {
 }
 
 std::string points_csv(const Study& study) {
-  std::string text = "curve,settings,valid,wall_s,element_updates,steps,dt_s,balance_error,kinetic_ratio";
+  std::string text =
+      "curve,settings,valid,wall_s,cpu_s,element_updates,steps,dt_s,balance_error,kinetic_ratio";
   const std::vector<Column> columns = columns_of(study);
   for (const Column& column : columns) text += ",error_" + column.name;
   text += "\n";
   for (const StudyPoint& point : study.points) {
     text += point.curve + ",\"" + words(point.settings) + "\"," + (point.valid() ? "1" : "0");
     for (const double value :
-         {point.wall_seconds(), point.element_updates(), mean_of(point, &StudyRun::steps),
-          mean_of(point, &StudyRun::dt), mean_of(point, &StudyRun::balance_error),
-          mean_of(point, &StudyRun::kinetic_ratio)})
+         {point.mean(&StudyRun::wall_seconds), point.mean(&StudyRun::cpu_seconds),
+          point.mean(&StudyRun::element_updates), point.mean(&StudyRun::steps), point.mean(&StudyRun::dt),
+          point.mean(&StudyRun::balance_error), point.mean(&StudyRun::kinetic_ratio)})
       text += "," + exact(value);
     for (const Column& column : columns) {
       const double error = error_of(point, column.name);
@@ -336,9 +333,9 @@ std::string points_csv(const Study& study) {
 }
 
 std::string ranks_csv(const Study& study) {
-  std::string text = "fidelity,settings,wall_s,spearman,kendall,objectives\n";
+  std::string text = "fidelity,settings,cpu_s,spearman,kendall,objectives\n";
   for (const RankRow& r : study.ranks) {
-    text += r.name + ",\"" + words(r.settings) + "\"," + exact(r.wall_seconds) + "," + exact(r.spearman) +
+    text += r.name + ",\"" + words(r.settings) + "\"," + exact(r.cpu_seconds) + "," + exact(r.spearman) +
             "," + exact(r.kendall) + ",\"";
     for (size_t k = 0; k < r.objectives.size(); ++k)
       text += (k > 0 ? " " : "") + (std::isfinite(r.objectives[k]) ? fixed(r.objectives[k], 4) : "-");
@@ -375,6 +372,7 @@ json study_json(const Study& study) {
     out["rank_correlation"].push_back({{"name", r.name},
                                        {"settings", settings_json(r.settings)},
                                        {"wall_seconds", finite(r.wall_seconds)},
+                                       {"cpu_seconds", finite(r.cpu_seconds)},
                                        {"spearman", finite(r.spearman)},
                                        {"kendall", finite(r.kendall)},
                                        {"schedules", r.compared}});
@@ -414,7 +412,8 @@ std::string study_text(const Study& study) {
   std::string text = "# Study of " + study.case_name + "\n\n";
   if (!study.points.empty()) {
     text += reference_text(study) +
-            "## Work and precision\n\nErrors against the reference, the largest of the baselines.\n\n" +
+            "## Work and precision\n\nErrors against the reference, the largest of the baselines. Times are "
+            "of one run on one core (processor time).\n\n" +
             points_text(study) + "\n## Cheapest settings\n\n" + cheapest_text(study) +
             "\n## Observed orders\n\n" +
             "Of the mesh against the reference, of other knobs against their most careful value.\n\n" +

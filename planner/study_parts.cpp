@@ -3,11 +3,8 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
 #include "planner/drape_problem.hpp"
-#include "planner/parallel.hpp"
-#include "planner/plan.hpp"
 #include "planner/quantity.hpp"
 #include "planner/statistics.hpp"
 #include "planner/study.hpp"
@@ -122,43 +119,20 @@ std::vector<ReachRow> study_reach(const StudySubject& subject, int repeats) {
   return rows;
 }
 
-std::vector<SearchTrace> study_search(const StudySubject& subject, const std::filesystem::path& log,
-                                      int threads) {
-  if (!subject.drapes()) return {};
-  const DrapeProblem problem(subject.whole());
-  const bool searches = problem.value().fidelities.count("search") > 0;
-  const std::string fidelity = searches ? "search" : kReport;
-  SearchTrace staged{"waves, then every gripper", {}, {}, {}}, even{"evenly spread schedules", {}, {}, {}};
-  const auto clock = std::chrono::steady_clock::now();
-  double best = kInfinity;
-  int before = 0, done = 0;
-  std::string stage;
-  plan(problem, {log, true, threads}, [&](const Progress& progress) {
-    if (progress.stage != stage) before += done, stage = progress.stage;
-    done = progress.done;
-    if (progress.stage != "gripper" || !std::isfinite(progress.best)) return;
-    best = std::min(best, progress.best);
-    staged.evaluations.push_back(before + done);
-    staged.seconds.push_back(seconds_since(clock));
-    staged.best.push_back(best);
-  });
-  const int count = int(staged.evaluations.empty() ? 0 : staged.evaluations.back());
-  std::mutex mutex;
-  best = kInfinity;
-  const auto start = std::chrono::steady_clock::now();
-  const std::vector<Schedule> schedules = subject.schedules(count);
-  parallel_for(
-      int(schedules.size()),
-      [&](int k) {
-        const Drape drape = problem.run(schedules[size_t(k)], fidelity);
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (drape.score.valid) best = std::min(best, drape.score.objective);
-        even.evaluations.push_back(double(even.evaluations.size() + 1));
-        even.seconds.push_back(seconds_since(start));
-        even.best.push_back(best);
-      },
-      threads);
-  return {staged, even};
+SearchTrace search_trace(const std::vector<Evaluation>& evaluations, const std::string& fidelity) {
+  SearchTrace trace{"waves, then every gripper", {}, {}, {}};
+  double seconds = 0, best = kInfinity;
+  for (size_t k = 0; k < evaluations.size(); ++k) {
+    const Evaluation& one = evaluations[k];
+    if (one.stage == "report") continue;  // finalists again, and baselines: no search
+    seconds += one.outcome.wall_seconds;
+    if (one.fidelity != fidelity || !one.outcome.score.valid) continue;
+    best = std::min(best, one.outcome.score.objective);
+    trace.evaluations.push_back(double(k + 1));
+    trace.seconds.push_back(seconds);
+    trace.best.push_back(best);
+  }
+  return trace;
 }
 
 std::map<std::string, std::map<std::string, double>> orders_of(const Study& study) {
@@ -193,16 +167,16 @@ std::map<std::string, Settings> chosen_fidelities(const Study& study) {
     const bool numerical = std::all_of(point.settings.begin(), point.settings.end(),
                                        [](const auto& setting) { return setting.first.starts_with("fem."); });
     const bool rates = point.settings.count("fem.rates") > 0;  // other physics, not another accuracy
-    if (!point.valid() || !numerical || rates || point.element_updates() >= cost) continue;
+    if (!point.valid() || !numerical || rates || point.mean(&StudyRun::element_updates) >= cost) continue;
     if (point.error.at("relative") > kReportError) continue;
-    cost = point.element_updates();
+    cost = point.mean(&StudyRun::element_updates);
     chosen[kReport] = point.settings;
   }
   for (const auto& [name, least] : {std::pair{"search", kSearchRank}, {"screen", kScreenRank}}) {
     cost = kInfinity;
     for (const RankRow& row : study.ranks) {
-      if (!(row.spearman >= least) || row.wall_seconds >= cost) continue;
-      cost = row.wall_seconds;
+      if (!(row.spearman >= least) || row.cpu_seconds >= cost) continue;
+      cost = row.cpu_seconds;
       chosen[name] = row.settings;
     }
   }

@@ -136,10 +136,26 @@ TEST(Study, ChoosesTheCheapestFidelitiesThatAreGoodEnough) {
   };
   Study study;
   study.points = {point("5 mm", 100, 0.01), point("7 mm", 40, 0.025), point("10 mm", 10, 0.05)};
-  study.ranks = {{"", {{"fem.mesh_size", "10 mm"}}, 5, 0.95, 0.8, {}, 24},
-                 {"", {{"fem.mesh_size", "15 mm"}}, 1, 0.92, 0.8, {}, 24},
-                 {"", {{"fem.mesh_size", "20 mm"}}, 0.3, 0.8, 0.6, {}, 24},
-                 {"", {{"fem.mesh_size", "30 mm"}}, 0.1, 0.4, 0.2, {}, 24}};
+  study.ranks = {{.name = "",
+                  .settings = {{"fem.mesh_size", "10 mm"}},
+                  .cpu_seconds = 5,
+                  .spearman = 0.95,
+                  .kendall = 0.8},
+                 {.name = "",
+                  .settings = {{"fem.mesh_size", "15 mm"}},
+                  .cpu_seconds = 1,
+                  .spearman = 0.92,
+                  .kendall = 0.8},
+                 {.name = "",
+                  .settings = {{"fem.mesh_size", "20 mm"}},
+                  .cpu_seconds = 0.3,
+                  .spearman = 0.8,
+                  .kendall = 0.6},
+                 {.name = "",
+                  .settings = {{"fem.mesh_size", "30 mm"}},
+                  .cpu_seconds = 0.1,
+                  .spearman = 0.4,
+                  .kendall = 0.2}};
   const std::map<std::string, Settings> chosen = chosen_fidelities(study);
   EXPECT_EQ(chosen.at("report").at("fem.mesh_size"), "7 mm");
   EXPECT_EQ(chosen.at("search").at("fem.mesh_size"), "15 mm");
