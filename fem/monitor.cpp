@@ -33,6 +33,9 @@ std::string millimetres(double length) {
   return text;
 }
 
+/// Strain of round-off, far from the origin: what a ply stores by it is nothing.
+constexpr double kRoundStrain = 1e-9;
+
 /// A ply this fast stands still [m/s]: books below its kinetic energy are round-off, which has no sign.
 constexpr double kStill = 1e-9;
 
@@ -44,6 +47,7 @@ double largest_energy(const Model& model, const State& state) {
 
 Monitor::Monitor(const Model& model) : model_(model) {
   half_ = model.flat_state(0);  // takes its room
+  for (const double part : nodal_areas(model.scene().mesh)) area_ += part;
   if (!model.scene().mold) return;
   const State& flat = half_;
   for (size_t n = 0; n < size_t(model.node_count()); ++n)
@@ -79,7 +83,8 @@ bool Monitor::holds_more(const State& state, double limit) {
   back(half_.x, state.v);
   back(half_.d, state.w);
   const ShellEnergy stored = model_.shell().stored_energy(half_);
-  return stored.fabric + stored.hourglass > limit;
+  const double rounding = 0.5 * model_.shell().borne_stretch() * area_ * kRoundStrain * kRoundStrain;
+  return stored.fabric + stored.hourglass > limit + rounding;
 }
 
 bool Monitor::look(State& state, RunReport& report) {

@@ -28,6 +28,7 @@ class Monitor {
 
   const Model& model_;
   double overhang_ = 0;  ///< of the flat start over the mold's edge [m]
+  double area_ = 0;      ///< of the ply [m^2]
   double slid_ = 0;      ///< of nodes that touch at the last look, over it [m]
   State half_;           ///< half a step before what is looked at; kept like strains_
   Snapshot strains_;     ///< kept, so that looking allocates nothing after the first time

@@ -37,6 +37,10 @@ std::string line_of(const StressOutcome& outcome) {
 }
 
 int stress(const StressOptions& options) {
+  if (!options.common.overrides.empty()) {
+    std::cerr << "stress: --set: its scenes are no case files, nothing can be changed in them\n";
+    return kInputWrong;
+  }
   const std::vector<StressScene> scenes = chosen_scenes(options);
   if (scenes.empty()) {
     std::cerr << "stress: no scene has a name with such a text; run it without --only to see all\n";

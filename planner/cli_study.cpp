@@ -23,6 +23,7 @@ struct StudyOptions {
   CommonOptions common;
   std::string file;
   std::vector<std::string> parts{"sweep", "ranks", "noise", "mapping", "reach", "search"};
+  std::vector<std::string> at;
   double refinement = 2.5;
   int schedules = 24;
   int repeats = 3;
@@ -101,7 +102,7 @@ void sweep(StudyWork& work, Study& study) {
 /// Every fidelity of the case and every combination of the sweep, named ones first; without those that turn
 /// the material's rates on or off against the reporting fidelity: other physics, not another accuracy.
 std::vector<RankRow> rank_rows(const StudySubject& subject) {
-  std::vector<RankRow> named{{.name = "fem"}}, others;
+  std::vector<RankRow> named{{.name = "base"}}, others;
   const bool rates = subject.changes_of(kReport).count("fem.rates") > 0;
   for (const StudyPoint& point : sweep_points(subject)) {
     const std::string fidelity = "fidelity ";
@@ -151,7 +152,7 @@ void measure_noise(StudyWork& work, Study& study) {
   constexpr double kStep = 1e-3;  // of the family's box: a few milliseconds, far below what a robot can tell
   const std::vector<Schedule> line = work.subject.line_of_schedules(kPoints, kStep);
   std::vector<Settings> settings{{}};
-  std::vector<std::string> names{"fem"};
+  std::vector<std::string> names{"base"};
   for (const std::string& name : work.subject.fidelities()) {
     const Settings changes = work.subject.changes_of(name);
     if (changes.count("fem.rates") > 0) continue;  // other physics
@@ -200,6 +201,7 @@ Study study_case(const StudySubject& subject, StudyRunner& runner, const StudyOp
   Study study;
   study.case_name = subject.base().name;
   study.drapes = subject.drapes();
+  study.at = subject.at();
   study.reference = reference_settings(subject, options.refinement);
   if (options.wants("mapping")) study.mapping = study_mapping(subject, options.repeats);
   if (options.wants("reach")) study.reach = study_reach(subject, options.repeats);
@@ -210,14 +212,33 @@ Study study_case(const StudySubject& subject, StudyRunner& runner, const StudyOp
   return study;
 }
 
+/// The settings of --at, without what the case has anyway. Errors go to stderr.
+std::optional<Settings> settings_at(const StudyOptions& options) {
+  Settings at;
+  for (const std::string& text : options.at) {
+    const size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      std::cerr << "study: --at: \"" << text << "\" is not path=value\n";
+      return std::nullopt;
+    }
+    at[text.substr(0, equals)] = text.substr(equals + 1);
+  }
+  CommonOptions changed = options.common;
+  changed.overrides.insert(changed.overrides.end(), options.at.begin(), options.at.end());
+  if (!load_case(options.file, changed, {"material"})) return std::nullopt;
+  return at;
+}
+
 int run_study(const StudyOptions& options) {
   const std::optional<Case> value = load_case(options.file, options.common, {"material"});
   if (!value) return kInputWrong;
+  const std::optional<Settings> at = settings_at(options);
+  if (!at) return kInputWrong;
   const std::filesystem::path folder = options.common.out.empty()
                                            ? std::filesystem::path("out") / ("study-" + value->name)
                                            : std::filesystem::path(options.common.out);
   std::filesystem::create_directories(folder);
-  const StudySubject subject(options.file, options.common.overrides);
+  const StudySubject subject(options.file, options.common.overrides, *at);
   ProgressLine line;
   StudyRunner runner(subject,
                      {folder / "study.jsonl", options.resume, options.common.threads, options.repeats},
@@ -249,8 +270,14 @@ void add_study(CLI::App& program, Action& action) {
             ->expected(1)
             ->take_all()
             ->allow_extra_args(false);
+        verb.add_option("--at", options.at,
+                        "turns knobs around this value instead of that of `fem` (repeatable)")
+            ->type_name("PATH=VALUE")
+            ->expected(1)
+            ->take_all()
+            ->allow_extra_args(false);
         verb.add_option("--refinement", options.refinement,
-                        "mesh size of the case over that of the reference (default: 2.5)")
+                        "mesh size of the base over that of the reference (default: 2.5)")
             ->check(CLI::Range(1.01, 20.0));
         verb.add_option("--schedules", options.schedules, "that are ranked (default: 24)")
             ->check(CLI::Range(4, 1000));

@@ -91,6 +91,38 @@ void add_steps(Scenes& scenes) {
   scenes.back().bisect = true;
 }
 
+/// The shell's forces in single precision, where rounding would show: small strains of stiff fibres, thin
+/// plies, heavy nodes, long steps.
+void add_precision(Scenes& scenes) {
+  const auto single = [](StripSetup strip) {
+    strip.options.precision = Precision::single_lanes;
+    return strip;
+  };
+  for (const double ratio : {1e2, 1e4, 1e7}) {
+    StripSetup strip;
+    strip.shear = strip.transverse = strip.modulus / ratio;
+    scenes.push_back(
+        strip_scene("single precision", "fibre / shear " + number_text(ratio) + ": sag", single(strip)));
+    scenes.back().fast = ratio == 1e7;
+  }
+  StripSetup thin, heavy;
+  thin.thickness = 1e-5 * thin.length;
+  scenes.push_back(strip_scene("single precision", "thickness / length 1e-05: sag", single(thin)));
+  heavy.options.mass_scaling = 1e5;
+  scenes.push_back(strip_scene("single precision", "mass scaling 1e+05: sag", single(heavy)));
+  scenes.push_back(
+      strip_scene("single precision", "0.95 of the estimate: woven strip", single(woven_strip(0.95))));
+  scenes.push_back(drape_scene("single precision", "drape",
+                               [](StressSetup& s) { s.scene.options.precision = Precision::single_lanes; }));
+  scenes.push_back(scenes.back());
+  scenes.back().name = "drape, beside double precision";
+  scenes.back().judge = [](const StressRun& run) {
+    FemOptions twice = run.setup.scene.options;
+    twice.precision = Precision::double_lanes;
+    return std::vector{at_most("apart from double precision [m]", apart_from(run, twice), 1e-3)};
+  };
+}
+
 void add_settings(Scenes& scenes) {
   for (const double stiffness : {1e-3, 1.0}) {
     scenes.push_back(
@@ -130,6 +162,7 @@ void add_settings(Scenes& scenes) {
 void add_numeric_scenes(Scenes& scenes) {
   add_mass(scenes);
   add_steps(scenes);
+  add_precision(scenes);
   add_settings(scenes);
 }
 

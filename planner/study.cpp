@@ -202,8 +202,8 @@ Eigen::VectorXd halton_point(int k, Eigen::Index dimension) {
 
 }  // namespace
 
-StudySubject::StudySubject(std::string file, std::vector<std::string> overrides)
-    : file_(std::move(file)), overrides_(std::move(overrides)) {
+StudySubject::StudySubject(std::string file, std::vector<std::string> overrides, Settings at)
+    : file_(std::move(file)), overrides_(std::move(overrides)), at_(std::move(at)) {
   base_ = with({});
 }
 
@@ -238,7 +238,9 @@ Settings StudySubject::changes_of(const std::string& fidelity) const {
 Case StudySubject::with(const Settings& settings) const {
   std::vector<std::string> overrides = overrides_;
   overrides.emplace_back("fidelities={}");
-  for (const auto& [path, value] : settings) overrides.push_back(path + "=" + value);
+  for (const Settings* changes : {&at_, &settings}) {
+    for (const auto& [path, value] : *changes) overrides.push_back(path + "=" + value);
+  }
   CaseReading reading = read_case(file_, overrides);
   if (reading.errors.empty() && !(reading.value.material.thickness > 0))
     reading.errors.push_back({file_, 0, "", "a study needs the section \"material\", which is absent"});

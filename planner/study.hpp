@@ -35,18 +35,21 @@ struct StudyRun {
 class StudySubject {
  public:
   /// @param overrides  path=value, applied before any settings.
+  /// @param at         settings around which knobs are turned, beside the `fem` section.
   /// @throws std::invalid_argument for a case that cannot be read or simulated.
-  StudySubject(std::string file, std::vector<std::string> overrides);
+  StudySubject(std::string file, std::vector<std::string> overrides, Settings at = {});
 
+  /// The case at these settings.
   [[nodiscard]] const Case& base() const { return base_; }
+  [[nodiscard]] const Settings& at() const { return at_; }
   /// The case with all its fidelities.
   [[nodiscard]] Case whole() const;
   [[nodiscard]] bool drapes() const { return base_.grippers.has_value(); }
-  /// Names of the case's fidelities, without the reporting one if that is the `fem` section as it is.
+  /// Names of the case's fidelities, without the reporting one if that is the base.
   [[nodiscard]] std::vector<std::string> fidelities() const;
-  /// What `fidelity` changes of the `fem` section.
+  /// What `fidelity` changes of the base.
   [[nodiscard]] Settings changes_of(const std::string& fidelity) const;
-  /// The case with `fem` changed by the settings, and `report` as its only fidelity.
+  /// The base changed by the settings, with `report` as its only fidelity.
   /// @throws std::invalid_argument with all that is wrong with them.
   [[nodiscard]] Case with(const Settings& settings) const;
 
@@ -67,6 +70,7 @@ class StudySubject {
  private:
   std::string file_;
   std::vector<std::string> overrides_;
+  Settings at_;
   Case base_;
 };
 
@@ -107,7 +111,7 @@ struct RankRow {
   double wall_seconds = 0, cpu_seconds = 0;  ///< of one run, median
   double spearman = 0, kendall = 0;
   std::vector<double> objectives = {};  ///< NaN where a run failed
-  int compared = 0;                ///< schedules that both could score
+  int compared = 0;                     ///< schedules that both could score
 };
 
 /// Sets the correlations of every row with the objectives of the reference.
@@ -157,6 +161,7 @@ SearchTrace search_trace(const std::vector<Evaluation>& evaluations, const std::
 struct Study {
   std::string case_name;
   bool drapes = false;
+  Settings at;  ///< see StudySubject
   Settings reference;
   std::vector<StudyRun> reference_runs;
   std::vector<StudyPoint> points;

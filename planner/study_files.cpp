@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "planner/charts.hpp"
 #include "planner/result_fields.hpp"
 #include "planner/statistics.hpp"
+#include "planner/study_charts.hpp"
 #include "planner/text.hpp"
 
 namespace drapeplan {
@@ -19,7 +19,7 @@ std::string words(const Settings& settings) {
   std::string text;
   for (const auto& [path, value] : settings)
     text += (text.empty() ? "" : ", ") + path.substr(path.find('.') + 1) + " " + value;
-  return text.empty() ? "as in the case" : text;
+  return text.empty() ? "the base" : text;
 }
 
 std::string row(const std::vector<std::string>& cells) {
@@ -42,45 +42,10 @@ std::string short_number(double value) {
   return text;
 }
 
-double error_of(const StudyPoint& point, const std::string& name) {
-  const auto found = point.error.find(name);
-  return found == point.error.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
-}
-
-/// An error as tables show it: lengths in mm, shares in per cent.
-struct Column {
-  std::string name, head;
-  double factor;
-};
-
-std::vector<Column> columns_of(const Study& study) {
-  if (study.drapes) {
-    return {{"separation", "gap [mm]", 1e3},
-            {"boundary_offset", "offset [mm]", 1e3},
-            {"relative", "larger of gap and offset [%]", 1e2},
-            {"places", "nodes r.m.s. [mm]", 1e3},
-            {"shear_deg", "shear r.m.s. [deg]", 1},
-            {"objective", "objective", 1}};
-  }
-  return {{"relative", "largest relative [%]", 1e2},
-          {"places", "nodes r.m.s. [mm]", 1e3},
-          {"shear_deg", "shear r.m.s. [deg]", 1}};
-}
-
-std::vector<int> front_of(const Study& study, const std::string& error) {
-  std::vector<double> cost, errors;
-  for (const StudyPoint& point : study.points) {
-    const bool numerical = std::all_of(point.settings.begin(), point.settings.end(),
-                                       [](const auto& s) { return s.first.starts_with("fem."); });
-    cost.push_back(point.valid() && numerical ? point.mean(&StudyRun::cpu_seconds)
-                                              : std::numeric_limits<double>::infinity());
-    errors.push_back(error_of(point, error));
-  }
-  return pareto_front(cost, errors);
-}
-
 std::string reference_text(const Study& study) {
-  std::string text = "Reference: " + words(study.reference) + ", all else as in the case";
+  std::string text = study.at.empty() ? "The base is the case's `fem` section."
+                                      : "The base is the case's `fem` section with " + words(study.at) + ".";
+  text += " Reference: " + words(study.reference) + ", all else as in the base";
   double seconds = 0;
   for (const StudyRun& run : study.reference_runs) seconds += run.cpu_seconds;
   text += "; " + short_number(seconds / double(std::max<size_t>(study.reference_runs.size(), 1))) +
@@ -93,18 +58,18 @@ std::string reference_text(const Study& study) {
   }
   for (const auto& [curve, error] : study.base_error) {
     if (curve == "mesh size" || curve == "rates") continue;  // stated before; other physics
-    rest += "; the case's " + curve + " differs from the most careful by " + short_number(1e2 * error) + " %";
+    rest += "; the base's " + curve + " differs from the most careful by " + short_number(1e2 * error) + " %";
   }
   return text + rest + ".\n\n";
 }
 
 std::string points_text(const Study& study) {
-  const std::vector<Column> columns = columns_of(study);
+  const std::vector<StudyColumn> columns = study_columns(study);
   std::vector<std::string> cells{"curve", "setting", "time [s]", "10^6 updates", "steps", "step [us]"};
-  for (const Column& column : columns) cells.push_back(column.head);
+  for (const StudyColumn& column : columns) cells.push_back(column.head);
   cells.insert(cells.end(), {"balance", "kinetic ratio", "front"});
   std::string text = head(cells);
-  const std::vector<int> front = front_of(study, "relative");
+  const std::vector<int> front = study_front(study, "relative");
   for (size_t k = 0; k < study.points.size(); ++k) {
     const StudyPoint& point = study.points[k];
     cells = {point.curve, words(point.settings)};
@@ -119,7 +84,7 @@ std::string points_text(const Study& study) {
          {point.mean(&StudyRun::cpu_seconds), 1e-6 * point.mean(&StudyRun::element_updates),
           point.mean(&StudyRun::steps), 1e6 * point.mean(&StudyRun::dt)})
       cells.push_back(short_number(value));
-    for (const Column& column : columns)
+    for (const StudyColumn& column : columns)
       cells.push_back(short_number(column.factor * error_of(point, column.name)));
     for (const double value : {point.mean(&StudyRun::balance_error), point.mean(&StudyRun::kinetic_ratio)})
       cells.push_back(short_number(value));
@@ -133,7 +98,7 @@ std::string cheapest_text(const Study& study) {
   std::string text = head({"error below [%]", "cheapest setting", "time [s]", "error [%]"});
   for (const double limit : {30.0, 10.0, 5.0, 3.0, 2.0, 1.0, 0.3, 0.1}) {
     const StudyPoint* best = nullptr;
-    for (const int k : front_of(study, "relative")) {
+    for (const int k : study_front(study, "relative")) {
       const StudyPoint& point = study.points[size_t(k)];
       if (1e2 * error_of(point, "relative") <= limit && best == nullptr) best = &point;
     }
@@ -149,13 +114,13 @@ std::string cheapest_text(const Study& study) {
 }
 
 std::string orders_text(const Study& study) {
-  const std::vector<Column> columns = columns_of(study);
+  const std::vector<StudyColumn> columns = study_columns(study);
   std::vector<std::string> cells{"knob"};
-  for (const Column& column : columns) cells.push_back(column.head.substr(0, column.head.find(" [")));
+  for (const StudyColumn& column : columns) cells.push_back(column.head.substr(0, column.head.find(" [")));
   std::string text = head(cells);
   for (const auto& [curve, orders] : orders_of(study)) {
     cells = {curve};
-    for (const Column& column : columns)
+    for (const StudyColumn& column : columns)
       cells.push_back(orders.count(column.name) > 0 ? short_number(orders.at(column.name)) : "\u2013");
     text += row(cells);
   }
@@ -215,78 +180,6 @@ std::string fidelities_text(const Study& study) {
   return text;
 }
 
-/// The series of a chart by name; made if there is none.
-ChartSeries& series_of(Chart& chart, const std::string& name) {
-  for (ChartSeries& series : chart.series) {
-    if (series.name == name) return series;
-  }
-  const bool dots = name == "combination" || name.starts_with("fidelity");
-  return chart.series.emplace_back(ChartSeries{.name = name, .points = {}, .dots = dots, .marks = true});
-}
-
-Chart work_chart(const Study& study, const std::string& title, const std::string& error) {
-  constexpr double kWidth = 820, kHeight = 460;
-  Chart chart{title + ", " + study.case_name, "run time on one core [s]", "error: " + error, {}};
-  chart.log_x = chart.log_y = chart.side_legend = true;
-  chart.width = kWidth;
-  chart.height = kHeight;
-  return chart;
-}
-
-Chart work_precision(const Study& study, const Column& column) {
-  Chart chart = work_chart(study, "Error against run time", column.head);
-  const auto place = [&](const StudyPoint& point) {
-    return Eigen::Vector2d(point.mean(&StudyRun::cpu_seconds), column.factor * error_of(point, column.name));
-  };
-  for (const StudyPoint& point : study.points) {
-    if (point.valid()) series_of(chart, point.curve).points.push_back(place(point));
-  }
-  ChartSeries front{.name = "Pareto front", .points = {}, .dots = true, .rings = true};
-  for (const int k : front_of(study, column.name)) front.points.push_back(place(study.points[size_t(k)]));
-  chart.series.push_back(front);
-  return chart;
-}
-
-/// What each knob alone does: its error against its own most careful value.
-Chart knob_chart(const Study& study) {
-  Chart chart = work_chart(study, "What each knob costs and saves", "against its most careful value [%]");
-  for (const StudyPoint& point : study.points) {
-    const auto error = point.knob_error.find("relative");
-    if (point.settings.size() != 1 || error == point.knob_error.end() || !(error->second > 0)) continue;
-    series_of(chart, point.curve)
-        .points.emplace_back(point.mean(&StudyRun::cpu_seconds), 1e2 * error->second);
-  }
-  return chart;
-}
-
-Chart search_chart(const Study& study, bool by_time) {
-  Chart chart{"Best objective of the search, " + study.case_name,
-              by_time ? "run time of all evaluations [s]" : "evaluations",
-              "best objective so far",
-              {}};
-  for (const SearchTrace& trace : study.searches) {
-    ChartSeries series{.name = trace.name, .points = {}, .steps = true};
-    const std::vector<double>& x = by_time ? trace.seconds : trace.evaluations;
-    for (size_t k = 0; k < x.size(); ++k) series.points.emplace_back(x[k], trace.best[k]);
-    chart.series.push_back(series);
-  }
-  return chart;
-}
-
-Chart rank_chart(const Study& study) {
-  Chart chart{"How settings rank " + std::to_string(study.schedules) + " schedules, " + study.case_name,
-              "run time on one core [s]",
-              "Spearman's rank correlation",
-              {}};
-  chart.log_x = true;
-  ChartSeries named{.name = "fidelities of the case", .points = {}, .dots = true, .marks = true},
-      others{.name = "combinations", .points = {}, .dots = true, .marks = true};
-  for (const RankRow& r : study.ranks)
-    (r.name.empty() ? others : named).points.emplace_back(r.cpu_seconds, r.spearman);
-  chart.series = {named, others};
-  return chart;
-}
-
 json settings_json(const Settings& settings) {
   json out = json::object();
   for (const auto& [path, value] : settings) out[path] = value;
@@ -313,8 +206,8 @@ json point_json(const StudyPoint& point) {
 std::string points_csv(const Study& study) {
   std::string text =
       "curve,settings,valid,wall_s,cpu_s,element_updates,steps,dt_s,balance_error,kinetic_ratio";
-  const std::vector<Column> columns = columns_of(study);
-  for (const Column& column : columns) text += ",error_" + column.name;
+  const std::vector<StudyColumn> columns = study_columns(study);
+  for (const StudyColumn& column : columns) text += ",error_" + column.name;
   text += "\n";
   for (const StudyPoint& point : study.points) {
     text += point.curve + ",\"" + words(point.settings) + "\"," + (point.valid() ? "1" : "0");
@@ -323,7 +216,7 @@ std::string points_csv(const Study& study) {
           point.mean(&StudyRun::element_updates), point.mean(&StudyRun::steps), point.mean(&StudyRun::dt),
           point.mean(&StudyRun::balance_error), point.mean(&StudyRun::kinetic_ratio)})
       text += "," + exact(value);
-    for (const Column& column : columns) {
+    for (const StudyColumn& column : columns) {
       const double error = error_of(point, column.name);
       text += "," + (std::isfinite(error) ? exact(error) : "");
     }
@@ -347,11 +240,8 @@ std::string ranks_csv(const Study& study) {
 }  // namespace
 
 json study_json(const Study& study) {
-  json out{{"case", study.case_name},
-           {"points", json::array()},
-           {"fidelities", json::object()},
-           {"rank_correlation", json::array()},
-           {"noise", json::array()}};
+  json out{{"case", study.case_name},      {"base", settings_json(study.at)},   {"points", json::array()},
+           {"fidelities", json::object()}, {"rank_correlation", json::array()}, {"noise", json::array()}};
   out["reference"] = {{"settings", settings_json(study.reference)}, {"runs", json::array()}};
   for (const auto& [curve, error] : study.base_error) out["reference"]["left"][curve] = finite(error);
   for (const StudyRun& run : study.reference_runs) {
@@ -425,23 +315,9 @@ std::string study_text(const Study& study) {
 void write_study(const std::filesystem::path& folder, const Study& study) {
   std::filesystem::create_directories(folder);
   write_text(folder / "study.md", study_text(study));
-  if (!study.points.empty()) {
-    write_text(folder / "points.csv", points_csv(study));
-    for (const Column& column : columns_of(study)) {
-      if (column.name == "relative" || column.name == "places")
-        write_text(folder / ("work_precision_" + column.name + ".svg"),
-                   line_chart(work_precision(study, column)));
-    }
-  }
-  if (!study.points.empty()) write_text(folder / "knobs.svg", line_chart(knob_chart(study)));
-  if (!study.ranks.empty()) {
-    write_text(folder / "ranks.csv", ranks_csv(study));
-    write_text(folder / "ranks.svg", line_chart(rank_chart(study)));
-  }
-  if (!study.searches.empty()) {
-    write_text(folder / "search_evaluations.svg", line_chart(search_chart(study, false)));
-    write_text(folder / "search_time.svg", line_chart(search_chart(study, true)));
-  }
+  if (!study.points.empty()) write_text(folder / "points.csv", points_csv(study));
+  if (!study.ranks.empty()) write_text(folder / "ranks.csv", ranks_csv(study));
+  for (const auto& [name, svg] : study_charts(study)) write_text(folder / (name + ".svg"), svg);
 }
 
 }  // namespace drapeplan

@@ -256,7 +256,8 @@ double share_of_disc(const RigOptions& rig, const Mesh& mesh) {
   const GripperRig built(rig, mesh.rest, std::vector<double>(nodes, 1.0), std::vector<double>(nodes, 0.0),
                          {{0, 0}}, 0);
   Polygon held;
-  for (const int node : built.tied_by_pad().front()) held.push_back(mesh.rest[size_t(node)]);
+  const std::vector<std::vector<int>> nodes_of = built.tied_by_pad();
+  for (const int node : nodes_of.front()) held.push_back(mesh.rest[size_t(node)]);
   return signed_area(convex_hull(held)) / (std::numbers::pi * rig.pad_radius * rig.pad_radius);
 }
 

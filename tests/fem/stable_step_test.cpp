@@ -157,23 +157,27 @@ TEST(StableStep, IsCloseForDistortedAndOutlineMeshes) {
 }
 
 /// The 3 x 3 rig of the quick case with the woven law of the tests.
-Scene quick_drape() {
-  Scene scene = test::middle_drape(0.205, 0.017);
+Scene quick_drape(double mesh_size = 0.017) {
+  Scene scene = test::middle_drape(0.205, mesh_size);
   scene.options.mass_scaling = 60;
   scene.options.time_scaling = 16;
   return scene;
 }
 
+// Cells under a pad (9.5 mm) are rigid. Where those between pads are coarser, the bound does not know in full
+// that the finest ones cannot vibrate, and stays further below: 0.72 once the ply lies down.
 TEST(StableStep, IsCloseThroughoutADrape) {
-  const Scene scene = quick_drape();
-  const Model model(scene);
-  const Schedule schedule = test::drop(scene, {.above = 3, .touch = 6, .end = 7, .clearance = 0.03});
-  for (const double pause : {1e-3, 3.5, 0.0}) {
-    const RunResult run = simulate(model, {.schedule = &schedule, .pause = pause});
-    ASSERT_NE(run.report.status, RunStatus::diverged) << run.report.message;
-    EXPECT_CLOSE_BOUND(ratio("quick drape at " + std::to_string(run.final.time) + " s", model, run.state),
-                       kClose);
-    EXPECT_CLOSE_BOUND(ply_ratio("drape", model, run.state), 0.92);
+  for (const auto& [mesh_size, close] : {std::pair(0.010, kClose), {0.017, 0.7}}) {
+    const Scene scene = quick_drape(mesh_size);
+    const Model model(scene);
+    const Schedule schedule = test::drop(scene, {.above = 3, .touch = 6, .end = 7, .clearance = 0.03});
+    for (const double pause : {1e-3, 3.5, 0.0}) {
+      const RunResult run = simulate(model, {.schedule = &schedule, .pause = pause});
+      ASSERT_NE(run.report.status, RunStatus::diverged) << run.report.message;
+      EXPECT_CLOSE_BOUND(ratio("quick drape at " + std::to_string(run.final.time) + " s", model, run.state),
+                         close);
+      EXPECT_CLOSE_BOUND(ply_ratio("drape", model, run.state), 0.92);
+    }
   }
 }
 

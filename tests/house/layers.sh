@@ -33,7 +33,7 @@ forbid "sources do not include tests" "${include}\"tests/" "${mapping[@]}" "${fe
 # JSON: what reads and writes files and results. Methods (search, scoring, reach, strategy) know nothing of it.
 json="case_document.hpp case_file.cpp case_file.hpp case_values.hpp case_writer.hpp json_text.hpp result_fields.hpp
   evaluation_log.cpp schedule_file.cpp plan.cpp cli.cpp cli.hpp"
-json=$(echo $json $(cd planner && echo cli_*.cpp *_result_file.cpp report_file.cpp material_file.cpp))
+json=$(echo $json $(cd planner && echo cli_*.cpp study.cpp study_files.* study_runner.cpp stress.hpp stress_table.cpp *_result_file.cpp report_file.cpp material_file.cpp))
 mapfile -t others < <(except "$json" "${planner[@]}")
 forbid "JSON is for reading and writing files" "${include}<nlohmann/" "${mapping[@]}" "${fem[@]}" "${others[@]}"
 

@@ -108,7 +108,7 @@ TEST(CaseFile, TheFlexdraperCaseHoldsWhatThePaperSays) {
   const CurvatureRange range = gaussian_curvature_range(*value.mold);
   EXPECT_NEAR(range.smallest, -25.46, 0.01);
   EXPECT_NEAR(range.largest, 23.41, 0.01);
-  EXPECT_EQ(value.fidelities.at("report").mesh_size, 0.010);
+  EXPECT_EQ(value.fidelities.at("report").mesh_size, 0.0075);
   EXPECT_GT(value.fidelities.at("search").time_scaling, value.fidelities.at("report").time_scaling);
   EXPECT_EQ(value.fidelities.at("search").section_points, value.fidelities.at("report").section_points);
 }

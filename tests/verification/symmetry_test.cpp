@@ -231,7 +231,10 @@ Schedule one_after_the_other(const Scene& scene) {
     const double end = test::joint_on_mold(scene, g), start = 4 + 0.25 * g;
     schedule.paths.push_back(
         {{0, top + 0.03}, {4, end + 0.03}, {start, end + 0.03}, {start + 2.5, end}, {8, end}});
-    if (g == 0) schedule.paths.back().erase(schedule.paths.back().begin() + 2);  // its start is at 4 as well
+    std::vector<Knot>& path = schedule.paths.back();
+    if (g == 0) path.erase(path.begin() + 2);  // its start is at 4 as well
+    if (path[path.size() - 2].time >= path.back().time)
+      path.pop_back();  // it ends at 8, with the last stroke
   }
   return schedule;
 }
