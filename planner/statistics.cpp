@@ -125,7 +125,9 @@ double observed_order(const std::vector<double>& size, const std::vector<double>
   for (double p = 2 * kStep; p <= kLargest; p += kStep) {
     if (scatter(p) < scatter(best)) best = p;
   }
-  return best;
+  return best > 2 * kStep && best < kLargest - 2 * kStep
+             ? best
+             : kNan;  // at a limit of the search there is no order
 }
 
 std::vector<int> pareto_front(const std::vector<double>& cost, const std::vector<double>& error) {

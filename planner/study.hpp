@@ -179,11 +179,11 @@ struct Study {
 /// Observed orders of the curves whose knob is a number, by curve and error: see observed_order().
 std::map<std::string, std::map<std::string, double>> orders_of(const Study& study);
 
-/// The fidelities that follow: `report` is the cheapest point with a relative error of at most 3 %, `search`
+/// The fidelities that follow: `report` is the cheapest point with a relative error of at most 1 %, `search`
 /// the cheapest setting that ranks schedules with Spearman >= 0.9, `screen` with >= 0.75. What no setting
 /// reaches is absent.
 std::map<std::string, Settings> chosen_fidelities(const Study& study);
 
-inline constexpr double kReportError = 0.03, kSearchRank = 0.9, kScreenRank = 0.75;
+inline constexpr double kReportError = 0.01, kSearchRank = 0.9, kScreenRank = 0.75;
 
 }  // namespace drapeplan

@@ -24,6 +24,7 @@ std::vector<Knob> knobs(const Case& base) {
       {"mass scaling", "fem.mass_scaling", {"1", "4", "20", "60", "160", "400"}},
       {"step safety", "fem.step_safety", {"0.2", "0.3", "0.45", "0.6", "0.75", "0.9", "0.95"}},
       {"section points", "fem.section_points", {"5", "3", "1"}},
+      {"precision", "fem.precision", {"double", "single"}},
       {"fibre points", "fem.fibre_points", {"2", "1"}},
       {"selective mass scaling", "fem.selective_scaling", {"1", "2", "3", "4", "6", "8"}}};
   if (base.grippers || !base.grips.empty())
@@ -62,9 +63,11 @@ std::vector<StudyPoint> sweep_points(const StudySubject& subject) {
   };
   for (const double factor : {1.0, 1.5, 2.0}) {
     for (const Cheap cheap : {Cheap{"20", "8", "4"},
+                              {"20", "8", "6"},
                               {"20", "16", "4"},
-                              {"60", "8", "6"},
-                              {"60", "16", "6"},
+                              {"20", "16", "6"},
+                              {"60", "8", "3"},
+                              {"60", "16", "3"},
                               {"20", "8", "4", true}}) {
       Settings settings{{"fem.mesh_size", rounded_length(factor * mesh)},
                         {"fem.mass_scaling", cheap.mass},

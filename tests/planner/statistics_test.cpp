@@ -73,6 +73,10 @@ TEST(ObservedOrder, IsReadOffExactErrors) {
   EXPECT_TRUE(std::isnan(observed_order({1, 1}, {1e-3, 2e-3})));
 }
 
+TEST(ObservedOrder, OfErrorsThatDoNotFallIsNone) {
+  EXPECT_TRUE(std::isnan(observed_order({1, 2, 4}, {3e-3, 2e-3, 3e-3})));
+}
+
 TEST(ObservedOrder, CountsThatTheReferenceHasAnErrorToo) {
   const double r = 0.5;
   std::vector<double> size{0.7, 1, 2}, error;

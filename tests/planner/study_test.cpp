@@ -135,7 +135,7 @@ TEST(Study, ChoosesTheCheapestFidelitiesThatAreGoodEnough) {
     return result;
   };
   Study study;
-  study.points = {point("5 mm", 100, 0.01), point("7 mm", 40, 0.025), point("10 mm", 10, 0.05)};
+  study.points = {point("5 mm", 100, 0.003), point("7 mm", 40, 0.009), point("10 mm", 10, 0.05)};
   study.ranks = {{.name = "",
                   .settings = {{"fem.mesh_size", "10 mm"}},
                   .cpu_seconds = 5,
