@@ -99,17 +99,25 @@ void sweep(StudyWork& work, Study& study) {
   }
 }
 
-/// Every fidelity of the case and every combination of the sweep, named ones first; without those that turn
-/// the material's rates on or off against the reporting fidelity: other physics, not another accuracy.
-std::vector<RankRow> rank_rows(const StudySubject& subject) {
+/// Every fidelity of the case, then every combination of the sweep that is cheap enough to screen with, if
+/// the sweep was run; without those that turn the material's rates on or off against the reporting fidelity:
+/// other physics, not another accuracy.
+std::vector<RankRow> rank_rows(const StudySubject& subject, const std::vector<StudyPoint>& swept) {
+  constexpr double kScreens = 0.04;  // of the updates of the reporting fidelity
+  double most = std::numeric_limits<double>::infinity();
+  for (const StudyPoint& point : swept) {
+    if (point.valid() && point.curve == std::string("fidelity ") + kReport)
+      most = kScreens * point.mean(&StudyRun::element_updates);
+  }
   std::vector<RankRow> named{{.name = "base"}}, others;
   const bool rates = subject.changes_of(kReport).count("fem.rates") > 0;
-  for (const StudyPoint& point : sweep_points(subject)) {
+  for (const StudyPoint& point : swept.empty() ? sweep_points(subject) : swept) {
     const std::string fidelity = "fidelity ";
     if ((point.settings.count("fem.rates") > 0) != rates) continue;
     if (point.curve.starts_with(fidelity)) {
       named.push_back({.name = point.curve.substr(fidelity.size()), .settings = point.settings});
-    } else if (point.curve == "combination") {
+    } else if (point.curve == "combination" && (swept.empty() || point.valid()) &&
+               point.mean(&StudyRun::element_updates) <= most) {
       others.push_back({.name = "", .settings = point.settings});
     }
   }
@@ -133,7 +141,7 @@ double median_of(const std::vector<StudyRun>& runs, double StudyRun::*member) {
 void rank(StudyWork& work, Study& study) {
   const std::vector<Schedule> schedules = work.subject.schedules(work.options.schedules);
   study.schedules = int(schedules.size());
-  study.ranks = rank_rows(work.subject);
+  study.ranks = rank_rows(work.subject, study.points);
   const Settings reference = work.subject.changes_of(kReport);
   study.rank_reference = "the reporting fidelity";
   std::vector<Settings> settings{reference};
