@@ -32,7 +32,7 @@ std::vector<double> lines_through(const std::vector<double>& centres, double rad
 
 double reach_of_pads(const RigOptions& rig, const std::vector<Eigen::Vector2d>& rest) {
   const double disc = std::numbers::pi * rig.pad_radius * rig.pad_radius;
-  constexpr double kFarthest = 1.5, kSame = 1e-6;  // of the radius
+  constexpr double kFarthest = 1.3, kSame = 1e-6;  // of the radius; a lattice of 3 x 3 nodes reaches to 1.25
   Polygon fullest;                                 // offsets of the nodes near the pad that has most of them
   for (int g = 0; g < rig.count(); ++g) {
     Polygon near;

@@ -37,14 +37,22 @@ std::string line_of(const StressOutcome& outcome) {
 }
 
 int stress(const StressOptions& options) {
-  if (!options.common.overrides.empty()) {
-    std::cerr << "stress: --set: its scenes are no case files, nothing can be changed in them\n";
+  if (!options.common.overrides.empty() || options.common.seed) {
+    std::cerr << "stress: --set and --seed: its scenes are no case files, nothing can be changed in them\n";
     return kInputWrong;
   }
   const std::vector<StressScene> scenes = chosen_scenes(options);
   if (scenes.empty()) {
     std::cerr << "stress: no scene has a name with such a text; run it without --only to see all\n";
     return kInputWrong;
+  }
+  if (!options.common.out.empty()) {  // minutes of runs are not to be lost
+    std::error_code error;
+    std::filesystem::create_directories(options.common.out, error);
+    if (error) {
+      std::cerr << options.common.out << ": cannot be made: " << error.message() << '\n';
+      return kInputWrong;
+    }
   }
   std::vector<StressOutcome> outcomes(scenes.size());
   std::mutex printing;

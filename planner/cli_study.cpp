@@ -6,6 +6,7 @@
 #include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "planner/cli.hpp"
 #include "planner/drape_problem.hpp"
@@ -22,7 +23,7 @@ using nlohmann::json;
 struct StudyOptions {
   CommonOptions common;
   std::string file;
-  std::vector<std::string> parts{"sweep", "ranks", "noise", "mapping", "reach", "search"};
+  std::vector<std::string> parts;  ///< empty: all that the case can have
   std::vector<std::string> at;
   double refinement = 2.5;
   int schedules = 24;
@@ -31,7 +32,7 @@ struct StudyOptions {
   std::string run;  ///< folder of a plan
 
   [[nodiscard]] bool wants(const char* part) const {
-    return std::find(parts.begin(), parts.end(), part) != parts.end();
+    return parts.empty() || std::find(parts.begin(), parts.end(), part) != parts.end();
   }
 };
 
@@ -93,7 +94,7 @@ void sweep(StudyWork& work, Study& study) {
     const auto [first, fresh] = careful.try_emplace(point.curve, point.runs);
     point.error = study_errors(point.runs, study.reference_runs, study.drapes);
     point.knob_error = study_errors(point.runs, first->second, study.drapes);
-    if (!fresh || point.settings.size() != 1) continue;
+    if (!fresh || point.settings.size() != 1 || point.curve.starts_with("fidelity")) continue;
     const auto left = study_errors(runs[1], point.runs, study.drapes);
     if (left.count("relative") > 0) study.base_error[point.curve] = left.at("relative");
   }
@@ -109,7 +110,7 @@ std::vector<RankRow> rank_rows(const StudySubject& subject, const std::vector<St
     if (point.valid() && point.curve == std::string("fidelity ") + kReport)
       most = kScreens * point.mean(&StudyRun::element_updates);
   }
-  std::vector<RankRow> named{{.name = "base"}}, others;
+  std::vector<RankRow> named, others;
   const bool rates = subject.changes_of(kReport).count("fem.rates") > 0;
   for (const StudyPoint& point : swept.empty() ? sweep_points(subject) : swept) {
     const std::string fidelity = "fidelity ";
@@ -133,7 +134,9 @@ std::vector<double> objectives(const std::vector<StudyRun>& runs) {
 
 double median_of(const std::vector<StudyRun>& runs, double StudyRun::*member) {
   std::vector<double> values;
-  for (const StudyRun& run : runs) values.push_back(run.*member);
+  for (const StudyRun& run : runs) {
+    if (run.valid) values.push_back(run.*member);
+  }
   return median(values);
 }
 
@@ -188,12 +191,14 @@ void trace_search(StudyWork& work, Study& study, const std::filesystem::path& fo
     const DrapeProblem problem(whole);
     (void)plan(problem, {run, work.options.resume, work.options.common.threads}, {});
   }
-  study.searches.push_back(search_trace(read_evaluations((run / "evaluations.jsonl").string()), fidelity));
+  EvaluationLog log((run / "evaluations.jsonl").string(), case_hash(whole));  // throws for another case's
+  study.searches.push_back(search_trace(log.evaluations(), fidelity));
   SearchTrace even{"evenly spread schedules", {}, {}, {}};
   double seconds = 0, best = std::numeric_limits<double>::infinity();
   const std::vector<Schedule> schedules = work.subject.schedules(work.options.schedules);
-  for (const StudyRun& one :
-       run_all(work, "search", {work.subject.changes_of(fidelity)}, schedules).front()) {
+  const std::vector<StudyRun> spread =
+      run_all(work, "search", {work.subject.changes_of(fidelity)}, schedules).front();
+  for (const StudyRun& one : spread) {
     seconds += one.wall_seconds;
     if (one.valid) best = std::min(best, one.objective);
     even.evaluations.push_back(double(even.evaluations.size() + 1));
@@ -237,16 +242,32 @@ std::optional<Settings> settings_at(const StudyOptions& options) {
   return at;
 }
 
-int run_study(const StudyOptions& options) {
-  const std::optional<Case> value = load_case(options.file, options.common, {"material"});
-  if (!value) return kInputWrong;
-  const std::optional<Settings> at = settings_at(options);
-  if (!at) return kInputWrong;
-  const std::filesystem::path folder = options.common.out.empty()
-                                           ? std::filesystem::path("out") / ("study-" + value->name)
-                                           : std::filesystem::path(options.common.out);
-  std::filesystem::create_directories(folder);
-  const StudySubject subject(options.file, options.common.overrides, *at);
+/// What is asked for by name must be possible. Errors go to stderr.
+bool parts_fit(const Case& value, const StudyOptions& options) {
+  bool fit = true;
+  const auto refuse = [&fit](const std::string& text) {
+    std::cerr << "study: " << text << '\n';
+    fit = false;
+  };
+  for (const std::string& part : options.parts) {
+    if (part == "mapping" && !value.mapping) refuse("--part mapping: the case has no section \"mapping\"");
+    const bool drapes = part == "ranks" || part == "noise" || part == "reach" || part == "search";
+    if (drapes && !value.grippers) refuse("--part " + part + ": the case has no section \"grippers\"");
+  }
+  if (options.run.empty()) return fit;
+  const std::string log = options.run + "/evaluations.jsonl";
+  try {
+    if (!std::filesystem::exists(log)) throw std::runtime_error(log + ": there is no such file");
+    const EvaluationLog known(log, case_hash(value));
+  } catch (const std::exception& error) {
+    refuse("--run: " + std::string(error.what()));
+  }
+  return fit;
+}
+
+/// The whole study, once all input is known to be good.
+int study_into(const std::filesystem::path& folder, const Case& value, const StudySubject& subject,
+               const StudyOptions& options) {
   ProgressLine line;
   StudyRunner runner(subject,
                      {folder / "study.jsonl", options.resume, options.common.threads, options.repeats},
@@ -257,12 +278,38 @@ int run_study(const StudyOptions& options) {
   write_study(folder, study);
   CommonOptions common = options.common;
   common.out = folder.string();
-  const int code = deliver(study_json(study), study_text(study), common, &*value);
+  const int code = deliver(study_json(study), study_text(study), common, &value);
   const bool referred =
       study.points.empty() || std::any_of(study.points.begin(), study.points.end(),
                                           [](const StudyPoint& point) { return point.valid(); });
   if (!referred) std::cerr << "study: no setting can be compared with the reference\n";
   return referred ? code : kNotFinished;
+}
+
+int run_study(const StudyOptions& options) {
+  const std::optional<Case> value = load_case(options.file, options.common, {"material"});
+  if (!value || !parts_fit(*value, options)) return kInputWrong;
+  const std::optional<Settings> at = settings_at(options);
+  if (!at) return kInputWrong;
+  std::vector<std::string> overrides = options.common.overrides;
+  if (options.common.seed) overrides.push_back("optimise.seed=" + std::to_string(*options.common.seed));
+  const std::filesystem::path folder = options.common.out.empty()
+                                           ? std::filesystem::path("out") / ("study-" + value->name)
+                                           : std::filesystem::path(options.common.out);
+  try {
+    const StudySubject subject(options.file, overrides, *at);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw std::invalid_argument(folder.string() + ": cannot be made: " + error.message());
+    return study_into(folder, *value, subject, options);
+  } catch (const std::invalid_argument& error) {
+    std::cerr << error.what() << '\n';
+    return kInputWrong;
+  } catch (const std::runtime_error& error) {
+    std::cerr << "study: not finished: " << error.what() << "; what was done is kept in " << folder.string()
+              << '\n';
+    return kNotFinished;
+  }
 }
 
 }  // namespace

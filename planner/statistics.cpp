@@ -86,7 +86,8 @@ NoiseEstimate difference_noise(const std::vector<double>& values) {
     for (size_t i = 0; i + 1 < differences.size(); ++i) {
       differences[i] = differences[i + 1] - differences[i];
       squares += differences[i] * differences[i];
-      (differences[i] > 0 ? up : down) = true;
+      up = up || differences[i] > 0;
+      down = down || differences[i] < 0;
     }
     differences.pop_back();
     share *= double(k) / double(2 * (2 * k - 1));

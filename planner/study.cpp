@@ -63,6 +63,20 @@ std::optional<std::array<double, 4>> bilinear_weights(const Mesh& mesh, size_t e
   return w;
 }
 
+/// Nothing off the ply.
+std::optional<Foot> foot_of(const Mesh& mesh, const Vector2d& at) {
+  for (size_t e = 0; e < mesh.quads.size(); ++e) {
+    if (const auto weight = bilinear_weights(mesh, e, at)) return Foot{e, *weight};
+  }
+  return std::nullopt;
+}
+
+Eigen::Vector3d place_of(const Mesh& mesh, const Foot& foot, const Snapshot& at) {
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  for (size_t c = 0; c < 4; ++c) place += foot.weight[c] * at.position[size_t(mesh.quads[foot.element][c])];
+  return place;
+}
+
 /// The points of the grid that lie on the ply; the same ones on every mesh, but for those on an oblique rim.
 std::vector<std::optional<Foot>> feet(const Mesh& mesh, const Ply& ply) {
   const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
@@ -70,11 +84,7 @@ std::vector<std::optional<Foot>> feet(const Mesh& mesh, const Ply& ply) {
   for (int j = 0; j < kSamples; ++j) {
     for (int i = 0; i < kSamples; ++i) {
       const Vector2d share(double(i) / (kSamples - 1), double(j) / (kSamples - 1));
-      const Vector2d at = box.min() + share.cwiseProduct(box.sizes());
-      result.emplace_back();
-      for (size_t e = 0; e < mesh.quads.size() && !result.back(); ++e) {
-        if (const auto weight = bilinear_weights(mesh, e, at)) result.back() = Foot{e, *weight};
-      }
+      result.push_back(foot_of(mesh, box.min() + share.cwiseProduct(box.sizes())));
     }
   }
   return result;
@@ -85,10 +95,7 @@ void add_fields(const Mesh& mesh, const std::vector<std::optional<Foot>>& where,
                 StudyRun& run) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const std::optional<Foot>& foot : where) {
-    Eigen::Vector3d place = Eigen::Vector3d::Zero();
-    for (size_t c = 0; foot && c < 4; ++c)
-      place += foot->weight[c] * end.position[size_t(mesh.quads[foot->element][c])];
-    run.places.push_back(foot ? place : Eigen::Vector3d::Constant(kNan));
+    run.places.push_back(foot ? place_of(mesh, *foot, end) : Eigen::Vector3d::Constant(kNan));
     run.shear_deg.push_back(foot ? kDegrees * end.shear[foot->element] : kNan);
   }
 }
@@ -135,13 +142,6 @@ StudyRun run_drape(const DrapeProblem& problem, const Schedule& schedule,
   return run;
 }
 
-size_t nearest_node(const Mesh& mesh, const Vector2d& place) {
-  const auto closer = [&place](const Vector2d& a, const Vector2d& b) {
-    return (a - place).squaredNorm() < (b - place).squaredNorm();
-  };
-  return size_t(std::min_element(mesh.rest.begin(), mesh.rest.end(), closer) - mesh.rest.begin());
-}
-
 StudyRun run_free(const Case& value) {
   const Model model(scene_of(value, value.fidelities.at(kReport)));
   const Mesh& mesh = model.scene().mesh;
@@ -155,8 +155,9 @@ StudyRun run_free(const Case& value) {
   if (!run.valid) return run;
   const Snapshot start = take_snapshot(model, model.flat_state(value.start_height), RigDrive{});
   for (const Probe& probe : value.probes) {
-    const size_t node = nearest_node(mesh, probe.place);
-    run.figures[probe.name] = (result.final.position[node] - start.position[node]).norm();
+    const std::optional<Foot> foot = foot_of(mesh, probe.place);
+    if (foot)
+      run.figures[probe.name] = (place_of(mesh, *foot, result.final) - place_of(mesh, *foot, start)).norm();
   }
   for (size_t k = 0; k < model.scene().grips.size(); ++k)
     run.figures[model.scene().grips[k].name + " force"] = result.final.grip_force[k].norm();
@@ -182,20 +183,15 @@ double rms_difference(const std::vector<double>& a, const std::vector<double>& b
   return count > 0 ? std::sqrt(sum / count) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Radical inverse of k in a base: points that fill [0, 1] evenly (J. H. Halton, 1960).
-double halton(int k, int base) {
-  double value = 0;
-  for (double share = 1.0 / base; k > 0; k /= base, share /= base) value += share * (k % base);
-  return value;
-}
-
-Eigen::VectorXd halton_point(int k, Eigen::Index dimension) {
-  constexpr std::array kPrimes{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71};
+/// Point k of a sequence that fills [0, 1]^n evenly: multiples of powers of 1 / g, with g the root of
+/// g^(n + 1) = g + 1 (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
+Eigen::VectorXd even_point(int k, Eigen::Index dimension) {
+  double g = 2;
+  for (int round = 0; round < 60; ++round) g = std::pow(1 + g, 1.0 / double(dimension + 1));
   Eigen::VectorXd x(dimension);
-  for (Eigen::Index d = 0; d < dimension;
-       ++d) {  // more dimensions than primes: later points of the same sequences
-    const auto count = Eigen::Index(kPrimes.size());
-    x[d] = halton(k + 100 * int(d / count), kPrimes[size_t(d % count)]);
+  for (Eigen::Index d = 0; d < dimension; ++d) {
+    const double whole = 0.5 + k * std::pow(g, -double(d + 1));
+    x[d] = whole - std::floor(whole);
   }
   return x;
 }
@@ -242,8 +238,15 @@ Case StudySubject::with(const Settings& settings) const {
     for (const auto& [path, value] : *changes) overrides.push_back(path + "=" + value);
   }
   CaseReading reading = read_case(file_, overrides);
-  if (reading.errors.empty() && !(reading.value.material.thickness > 0))
+  const Case& value = reading.value;
+  if (reading.errors.empty() && !(value.material.thickness > 0))
     reading.errors.push_back({file_, 0, "", "a study needs the section \"material\", which is absent"});
+  if (reading.errors.empty() && !value.grippers && !(value.duration > 0))
+    reading.errors.push_back(
+        {file_, 0, "/duration", "a study of a case without grippers needs a duration above 0"});
+  if (reading.errors.empty() && !value.grippers && value.probes.empty() && value.grips.empty())
+    reading.errors.push_back(
+        {file_, 0, "/probes", "a study of a case without grippers needs probes or grips to compare"});
   if (reading.errors.empty()) return std::move(reading.value);
   std::string text;
   for (const InputError& error : reading.errors) text += (text.empty() ? "" : "\n") + error.text();
@@ -265,11 +268,8 @@ std::vector<Schedule> StudySubject::schedules(int count) const {
   constexpr double kReach = 0.5;  // of the box of starts, around the baseline wave
   const Eigen::VectorXd middle = free.encode_base();
   for (int k = 1; int(result.size()) < count; ++k) {
-    if (k % 2 == 1) {
-      result.push_back(to_schedule(frame, waves.decode(halton_point(k, WaveFamily::kDimension))));
-      continue;
-    }
-    const Eigen::VectorXd spread = halton_point(k, free.dimension()).array() - 0.5;
+    result.push_back(to_schedule(frame, waves.decode(even_point(k, WaveFamily::kDimension))));
+    const Eigen::VectorXd spread = even_point(k, free.dimension()).array() - 0.5;
     result.push_back(to_schedule(frame, free.decode(middle + kReach * spread)));
   }
   result.resize(std::min(result.size(), size_t(std::max(count, 0))));

@@ -114,6 +114,9 @@ struct RankRow {
   int compared = 0;                     ///< schedules that both could score
 };
 
+/// Whether settings change numerics alone: not the material, nor whether its rates count.
+bool only_numerical(const Settings& settings);
+
 /// Sets the correlations of every row with the objectives of the reference.
 void rank_against(const std::vector<double>& reference, std::vector<RankRow>& rows);
 
@@ -180,8 +183,8 @@ struct Study {
 std::map<std::string, std::map<std::string, double>> orders_of(const Study& study);
 
 /// The fidelities that follow: `report` is the cheapest point with a relative error of at most 1 %, `search`
-/// the cheapest setting that ranks schedules with Spearman >= 0.9, `screen` with >= 0.75. What no setting
-/// reaches is absent.
+/// the cheapest setting that can score every schedule and ranks them with Spearman >= 0.9, `screen` with >=
+/// 0.75. What no setting reaches is absent.
 std::map<std::string, Settings> chosen_fidelities(const Study& study);
 
 inline constexpr double kReportError = 0.01, kSearchRank = 0.9, kScreenRank = 0.75;

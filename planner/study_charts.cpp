@@ -119,10 +119,8 @@ std::vector<StudyColumn> study_columns(const Study& study) {
 std::vector<int> study_front(const Study& study, const std::string& error) {
   std::vector<double> cost, errors;
   for (const StudyPoint& point : study.points) {
-    const bool numerical = std::all_of(point.settings.begin(), point.settings.end(),
-                                       [](const auto& s) { return s.first.starts_with("fem."); });
-    cost.push_back(point.valid() && numerical ? point.mean(&StudyRun::cpu_seconds)
-                                              : std::numeric_limits<double>::infinity());
+    cost.push_back(point.valid() && only_numerical(point.settings) ? point.mean(&StudyRun::cpu_seconds)
+                                                                   : std::numeric_limits<double>::infinity());
     errors.push_back(error_of(point, error));
   }
   return pareto_front(cost, errors);

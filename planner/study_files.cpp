@@ -76,7 +76,10 @@ std::string points_text(const Study& study) {
     if (!point.valid()) {
       const auto failed =
           std::find_if(point.runs.begin(), point.runs.end(), [](const auto& r) { return !r.valid; });
-      cells.push_back(failed == point.runs.end() ? "no reference" : failed->reason);
+      std::string reason = failed == point.runs.end() ? "no reference" : failed->reason;
+      std::replace_if(
+          reason.begin(), reason.end(), [](char c) { return c == '\n' || c == '|'; }, ' ');
+      cells.push_back(reason);
       text += row(cells);
       continue;
     }
@@ -150,7 +153,8 @@ std::string parts_text(const Study& study) {
   }
   if (!study.mapping.empty()) {
     text += "\n## Mapping, against the finest\n\n" +
-            head({"cell [mm]", "wall [ms]", "targets [um]", "places r.m.s. [um]", "largest shear [deg]"});
+            head({"cell [mm]", "wall [ms]", "targets [um]", "places r.m.s. [um]",
+                  "error of the largest shear [deg]"});
     for (const MappingRow& m : study.mapping)
       text +=
           row({short_number(1e3 * m.cell_size), short_number(1e3 * m.wall_seconds),

@@ -122,13 +122,14 @@ std::vector<ReachRow> study_reach(const StudySubject& subject, int repeats) {
 SearchTrace search_trace(const std::vector<Evaluation>& evaluations, const std::string& fidelity) {
   SearchTrace trace{"waves, then every gripper", {}, {}, {}};
   double seconds = 0, best = kInfinity;
-  for (size_t k = 0; k < evaluations.size(); ++k) {
-    const Evaluation& one = evaluations[k];
+  int count = 0;
+  for (const Evaluation& one : evaluations) {
     if (one.stage == "report") continue;  // finalists again, and baselines: no search
+    ++count;
     seconds += one.outcome.wall_seconds;
     if (one.fidelity != fidelity || !one.outcome.score.valid) continue;
     best = std::min(best, one.outcome.score.objective);
-    trace.evaluations.push_back(double(k + 1));
+    trace.evaluations.push_back(count);
     trace.seconds.push_back(seconds);
     trace.best.push_back(best);
   }
@@ -160,22 +161,27 @@ std::map<std::string, std::map<std::string, double>> orders_of(const Study& stud
   return orders;
 }
 
+bool only_numerical(const Settings& settings) {
+  return std::all_of(settings.begin(), settings.end(), [](const auto& setting) {
+    return setting.first.starts_with("fem.") && setting.first != "fem.rates";
+  });
+}
+
 std::map<std::string, Settings> chosen_fidelities(const Study& study) {
   std::map<std::string, Settings> chosen;
   double cost = kInfinity;
   for (const StudyPoint& point : study.points) {
-    const bool numerical = std::all_of(point.settings.begin(), point.settings.end(),
-                                       [](const auto& setting) { return setting.first.starts_with("fem."); });
-    const bool rates = point.settings.count("fem.rates") > 0;  // other physics, not another accuracy
-    if (!point.valid() || !numerical || rates || point.mean(&StudyRun::element_updates) >= cost) continue;
-    if (point.error.at("relative") > kReportError) continue;
-    cost = point.mean(&StudyRun::element_updates);
+    const auto error = point.error.find("relative");
+    if (error == point.error.end() || error->second > kReportError || !only_numerical(point.settings))
+      continue;
+    if (point.mean(&StudyRun::cpu_seconds) >= cost) continue;
+    cost = point.mean(&StudyRun::cpu_seconds);
     chosen[kReport] = point.settings;
   }
   for (const auto& [name, least] : {std::pair{"search", kSearchRank}, {"screen", kScreenRank}}) {
     cost = kInfinity;
     for (const RankRow& row : study.ranks) {
-      if (!(row.spearman >= least) || row.cpu_seconds >= cost) continue;
+      if (!(row.spearman >= least) || row.compared < study.schedules || row.cpu_seconds >= cost) continue;
       cost = row.cpu_seconds;
       chosen[name] = row.settings;
     }

@@ -68,7 +68,11 @@ StudyRunner::StudyRunner(const StudySubject& subject, StudyRunnerOptions options
                          std::function<void(const std::string&, int, int)> progress)
     : subject_(subject), options_(std::move(options)), progress_(std::move(progress)) {
   if (options_.log.empty()) return;
-  if (options_.resume) read_log();
+  if (options_.resume) {
+    read_log();
+  } else if (std::filesystem::exists(options_.log)) {  // hours of work: never lost by a forgotten option
+    std::filesystem::rename(options_.log, options_.log.string() + ".old");
+  }
   file_.open(options_.log, options_.resume ? std::ios::app : std::ios::trunc);
   if (!file_) throw std::runtime_error(options_.log.string() + ": cannot be written");
   if (torn_) file_ << '\n';
@@ -77,11 +81,18 @@ StudyRunner::StudyRunner(const StudySubject& subject, StudyRunnerOptions options
 /// A torn last line (of a study that was killed) is passed over.
 void StudyRunner::read_log() {
   std::ifstream in(options_.log);
+  int number = 0;
   for (std::string line; std::getline(in, line);) {
+    ++number;
     torn_ = in.eof();
-    const json entry = json::parse(line, nullptr, false);
-    if (entry.is_discarded() || !entry.contains("key") || !entry.contains("run")) continue;
-    known_[entry["key"].get<std::string>()] = from_json(entry["run"]);
+    try {
+      const json entry = json::parse(line);
+      known_[entry.at("key").get<std::string>()] = from_json(entry.at("run"));
+    } catch (const json::exception&) {
+      if (torn_ || line.empty()) continue;
+      throw std::invalid_argument(options_.log.string() + ":" + std::to_string(number) +
+                                  ": is no run of a study; remove this line or leave out --resume");
+    }
   }
 }
 

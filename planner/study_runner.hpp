@@ -28,7 +28,9 @@ struct StudyRunnerOptions {
 class StudyRunner {
  public:
   /// @param progress  called after each run with how many are done, of how many; one call at a time.
-  /// @throws std::runtime_error if the log cannot be read or written.
+  /// A log that is not resumed is kept beside the new one, as *.old.
+  /// @throws std::runtime_error if the log cannot be written, std::invalid_argument if a line of it is
+  /// broken.
   StudyRunner(const StudySubject& subject, StudyRunnerOptions options,
               std::function<void(const std::string& what, int done, int of)> progress);
 

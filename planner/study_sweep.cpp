@@ -1,5 +1,6 @@
 // Which settings a study tries.
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "planner/drape_problem.hpp"
@@ -14,6 +15,11 @@ struct Knob {
   std::vector<std::string> values;
 };
 
+/// Whether something is driven, so that it may be driven faster.
+bool is_driven(const Case& base) {
+  return base.grippers || !base.grips.empty();
+}
+
 std::vector<Knob> knobs(const Case& base) {
   const FemOptions& fem = base.fidelities.at(kReport);
   Knob mesh{"mesh size", "fem.mesh_size", {}};
@@ -27,8 +33,7 @@ std::vector<Knob> knobs(const Case& base) {
       {"precision", "fem.precision", {"double", "single"}},
       {"fibre points", "fem.fibre_points", {"2", "1"}},
       {"selective mass scaling", "fem.selective_scaling", {"1", "2", "3", "4", "6", "8"}}};
-  if (base.grippers || !base.grips.empty())
-    list.push_back({"time scaling", "fem.time_scaling", {"1", "2", "4", "8", "16", "32"}});
+  if (is_driven(base)) list.push_back({"time scaling", "fem.time_scaling", {"1", "2", "4", "8", "16", "32"}});
   list.push_back({"fibre stiffness", "material.tension.factor", {"1", "0.5", "0.2", "0.05", "0.01"}});
   if (base.material.shear.curves.size() > 1 || base.material.compression.curves.size() > 1)
     list.push_back({"rates", "fem.rates", {"true", "false"}});
@@ -72,9 +77,11 @@ std::vector<StudyPoint> sweep_points(const StudySubject& subject) {
       Settings settings{{"fem.mesh_size", rounded_length(factor * mesh)},
                         {"fem.mass_scaling", cheap.mass},
                         {"fem.selective_scaling", cheap.selective}};
-      if (subject.drapes()) settings["fem.time_scaling"] = cheap.time;
+      if (is_driven(subject.base())) settings["fem.time_scaling"] = cheap.time;
       if (cheap.single) settings["fem.precision"] = "single";
-      points.push_back({"combination", settings, {}, {}, {}});
+      const auto same = [&settings](const StudyPoint& point) { return point.settings == settings; };
+      if (std::none_of(points.begin(), points.end(), same))
+        points.push_back({"combination", settings, {}, {}, {}});
     }
   }
   return points;

@@ -29,6 +29,26 @@ refuse "unknown" study "$strip" --set "fem.mesh_seize=3 mm"
 refuse "--part" study "$strip" --part everything
 refuse "no-such" study "$source/cases/no-such.json"
 refuse "material" study "$source/cases/plane-mapping.json"
+refuse "no section \"grippers\"" study "$strip" --part ranks
+refuse "duration" study "$strip" --set "duration=0 s"
+refuse "probes" study "$strip" --set "probes=[]"
+refuse "evaluations.jsonl" study "$quick" --part search --run "$source"
+expect 2 study "$strip" "${short[@]}" --out "$strip/below"
+echo 'no run' >"$work/study/study.jsonl"
+echo 'nor this' >>"$work/study/study.jsonl"
+expect 2 study "$strip" "${short[@]}" --out "$work/study" --resume
+grep -q 'study.jsonl:1' "$work/stderr" || fail "the broken line is not named: $(head -c 300 "$work/stderr")"
+
+# A drape: ranks and the search of a run.
+coarse=(--set "fem.mesh_size=34 mm" --set "fidelities={}" --set fem.time_scaling=30 --set optimise.wave_evaluations=4
+  --set optimise.gripper_evaluations=4 --set optimise.finalists=1)
+expect 0 study "$quick" "${coarse[@]}" --part search --part noise --part reach --part mapping --schedules 4 --repeats 1 \
+  --out "$work/drape" --json
+within "$work/stdout" /searches/0/best/0 0 1000
+within "$work/stdout" /noise/0/objective 0 1000
+within "$work/stdout" /reach/0/link_violation 0 1e-6
+within "$work/stdout" /mapping/1/error/places 0 1e-3
+
 refuse "no scene" stress --only "no such scene"
 refuse "--set" stress --set fem.rates=false
 
@@ -41,4 +61,4 @@ for file in stress.md stress.csv; do
   checks=$((checks + 1))
   [ -s "$work/stress/$file" ] || fail "stress wrote no $file"
 done
-finish 25
+finish 40
