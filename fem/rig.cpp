@@ -10,7 +10,7 @@
 namespace drapeplan {
 namespace {
 
-/// Lines through pads whose centres are at `centres`: see pad_lines().
+/// Lines through pads whose centres are at `centres`: see column_places().
 std::vector<double> lines_through(const std::vector<double>& centres, double radius, double mesh_size) {
   const double disc = std::numbers::pi * radius * radius;
   const int most = std::max(1, int(std::ceil(radius / mesh_size - 1e-9)));
@@ -23,7 +23,16 @@ std::vector<double> lines_through(const std::vector<double>& centres, double rad
   const double cell = std::sqrt(disc / signed_area(convex_hull(lattice)));
   std::vector<double> lines;
   for (const double centre : centres) {
-    for (int k = -most; k <= most; ++k) lines.push_back(centre + k * cell);
+    for (int k = -most; k <= most; ++k) {
+      const double line = centre + k * cell;
+      // Pads that all but touch: two lines of theirs that are close become one, or a sliver would set the
+      // step.
+      if (!lines.empty() && line - lines.back() < 0.5 * cell) {
+        lines.back() = 0.5 * (lines.back() + line);
+      } else {
+        lines.push_back(line);
+      }
+    }
   }
   return lines;
 }

@@ -55,7 +55,8 @@ struct RigOptions {
 };
 
 /// Mesh lines through columns of pads along u, and through rows of them along v [m], increasing. The lines of
-/// a pad are so far apart, about `mesh_size`, that the nodes which it holds span the area of its disc.
+/// a pad are so far apart, `mesh_size` or less, that the nodes which it holds span the area of its disc:
+/// three at least, however large `mesh_size` is.
 std::vector<double> column_places(const RigOptions& rig, double mesh_size);
 std::vector<double> row_places(const RigOptions& rig, double mesh_size);
 

@@ -75,25 +75,28 @@ StudyRunner::StudyRunner(const StudySubject& subject, StudyRunnerOptions options
   }
   file_.open(options_.log, options_.resume ? std::ios::app : std::ios::trunc);
   if (!file_) throw std::runtime_error(options_.log.string() + ": cannot be written");
-  if (torn_) file_ << '\n';
 }
 
-/// A torn last line (of a study that was killed) is passed over.
+/// A torn last line (of a study that was killed) is cut off.
 void StudyRunner::read_log() {
   std::ifstream in(options_.log);
   int number = 0;
+  std::uintmax_t good = 0;  // bytes of whole lines
   for (std::string line; std::getline(in, line);) {
     ++number;
-    torn_ = in.eof();
+    const bool torn = in.eof();
+    if (torn) break;
     try {
       const json entry = json::parse(line);
       known_[entry.at("key").get<std::string>()] = from_json(entry.at("run"));
     } catch (const json::exception&) {
-      if (torn_ || line.empty()) continue;
       throw std::invalid_argument(options_.log.string() + ":" + std::to_string(number) +
                                   ": is no run of a study; remove this line or leave out --resume");
     }
+    good += line.size() + 1;
   }
+  in.close();
+  if (std::filesystem::exists(options_.log)) std::filesystem::resize_file(options_.log, good);
 }
 
 /// Of the complete case and the schedule, so that no change of either is served from the log.

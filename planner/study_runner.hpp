@@ -49,7 +49,6 @@ class StudyRunner {
   std::function<void(const std::string&, int, int)> progress_;
   std::map<std::string, StudyRun> known_;
   std::ofstream file_;
-  bool torn_ = false;  ///< the log that is resumed ends within a line
 };
 
 }  // namespace drapeplan

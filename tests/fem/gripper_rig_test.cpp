@@ -273,6 +273,19 @@ TEST(GripperRig, APadHoldsTheAreaOfItsDiscWhateverTheMesh) {
   }
 }
 
+TEST(GripperRig, PadsThatAllButTouchMakeNoSliver) {
+  RigOptions rig = one_gripper().options;
+  rig.columns = 3;
+  rig.pad_radius = 0.05;
+  for (const double spacing : {0.1, 0.1001, 0.103, 0.11}) {
+    rig.spacing = spacing;
+    const std::vector<double> lines = column_places(rig, 0.007);
+    double narrowest = 1;
+    for (size_t k = 1; k < lines.size(); ++k) narrowest = std::min(narrowest, lines[k] - lines[k - 1]);
+    EXPECT_GE(narrowest, 0.002) << spacing;
+  }
+}
+
 TEST(GripperRig, PadsThatTouchShareNoNode) {
   RigOptions rig = one_gripper().options;
   rig.columns = 2;

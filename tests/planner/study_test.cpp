@@ -140,9 +140,9 @@ TEST(StudyRunner, ResumesWithoutRunningAgain) {
 }
 
 TEST(Study, ChoosesTheCheapestFidelitiesThatAreGoodEnough) {
-  const auto point = [](const char* mesh, double updates, double error) {
+  const auto point = [](const char* mesh, double seconds, double error) {
     StudyPoint result{"mesh size", {{"fem.mesh_size", mesh}}, {StudyRun()}, {{"relative", error}}, {}};
-    result.runs[0].element_updates = updates;
+    result.runs[0].cpu_seconds = seconds;
     return result;
   };
   Study study;
