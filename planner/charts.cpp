@@ -85,8 +85,9 @@ void draw_axes(Svg& svg, const Axis& x, const Axis& y, const std::string& x_labe
 /// Hues that stay apart for colour-blind readers (Okabe and Ito, 2008; then P. Tol's muted scheme); many
 /// series without a list of names beside the chart take the sequential colours.
 std::string series_colour(const Chart& chart, size_t number) {
-  static constexpr std::array kHues{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9",
-                                    "#332288", "#882255", "#999933", "#117733", "#44aa99", "#5b6775"};
+  static constexpr std::array kHues{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",
+                                    "#56b4e9", "#332288", "#882255", "#999933", "#117733",
+                                    "#44aa99", "#5b6775", "#1d2733"};
   constexpr size_t kFew = 6;
   const size_t count = chart.series.size();
   if (chart.side_legend || count <= kFew) return kHues[number % kHues.size()];

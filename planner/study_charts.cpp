@@ -9,12 +9,13 @@
 namespace drapeplan {
 namespace {
 
-/// The series of a chart by name; made if there is none.
-ChartSeries& series_of(Chart& chart, const std::string& name) {
+/// The series of a curve; made if there is none. Fidelities of the case share one.
+ChartSeries& series_of(Chart& chart, const std::string& curve) {
+  const std::string name = curve.starts_with("fidelity") ? "fidelities of the case" : curve;
   for (ChartSeries& series : chart.series) {
     if (series.name == name) return series;
   }
-  const bool dots = name == "combination" || name.starts_with("fidelity");
+  const bool dots = name != curve || curve == "combination";
   return chart.series.emplace_back(ChartSeries{.name = name, .points = {}, .dots = dots, .marks = true});
 }
 
