@@ -295,7 +295,9 @@ TEST(GripperRig, PadsThatTouchShareNoNode) {
   const GripperRig built(rig, mesh.rest, std::vector<double>(nodes, 1.0), std::vector<double>(nodes, 0.0),
                          {{-0.02, 0}, {0.02, 0}}, 0);
   const auto held = built.tied_by_pad();
-  EXPECT_EQ(held[0].size(), held[1].size());
+  // The line between them is common to both, and the first one's.
+  EXPECT_GE(held[1].size(), 6U);
+  EXPECT_LE(held[1].size(), held[0].size());
   for (const int node : held[0]) EXPECT_EQ(std::count(held[1].begin(), held[1].end(), node), 0);
 }
 
