@@ -81,7 +81,8 @@ std::vector<std::vector<StudyRun>> run_all(StudyWork& work, const std::string& w
 }
 
 void sweep(StudyWork& work, Study& study) {
-  const std::vector<Schedule> schedules = work.subject.schedules(int(work.subject.baselines().size()));
+  constexpr int kBaselines = 2;  // uniform and wave
+  const std::vector<Schedule> schedules = work.subject.schedules(kBaselines);
   study.points = sweep_points(work.subject);
   std::vector<Settings> settings{study.reference, {}};
   for (const StudyPoint& point : study.points) settings.push_back(point.settings);

@@ -77,16 +77,10 @@ Eigen::Vector3d place_of(const Mesh& mesh, const Foot& foot, const Snapshot& at)
   return place;
 }
 
-/// The points of the grid that lie on the ply; the same ones on every mesh, but for those on an oblique rim.
+/// Of the compared points that lie on the ply; the same ones on every mesh, but for those on an oblique rim.
 std::vector<std::optional<Foot>> feet(const Mesh& mesh, const Ply& ply) {
-  const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
   std::vector<std::optional<Foot>> result;
-  for (int j = 0; j < kSamples; ++j) {
-    for (int i = 0; i < kSamples; ++i) {
-      const Vector2d share(double(i) / (kSamples - 1), double(j) / (kSamples - 1));
-      result.push_back(foot_of(mesh, box.min() + share.cwiseProduct(box.sizes())));
-    }
-  }
+  for (const Vector2d& point : compared_points(ply)) result.push_back(foot_of(mesh, point));
   return result;
 }
 
@@ -163,15 +157,6 @@ StudyRun run_free(const Case& value) {
     run.figures[model.scene().grips[k].name + " force"] = result.final.grip_force[k].norm();
   add_fields(mesh, feet(mesh, value.ply), result.final, run);
   return run;
-}
-
-double rms_distance(const StudyRun& a, const StudyRun& b) {
-  double sum = 0, count = 0;
-  for (size_t k = 0; k < std::min(a.places.size(), b.places.size()); ++k) {
-    const double square = (a.places[k] - b.places[k]).squaredNorm();
-    if (std::isfinite(square)) sum += square, count += 1;
-  }
-  return count > 0 ? std::sqrt(sum / count) : std::numeric_limits<double>::quiet_NaN();
 }
 
 double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -253,10 +238,6 @@ Case StudySubject::with(const Settings& settings) const {
   throw std::invalid_argument(text);
 }
 
-std::vector<std::string> StudySubject::baselines() const {
-  return drapes() ? std::vector<std::string>{"uniform", "wave"} : std::vector<std::string>{""};
-}
-
 std::vector<Schedule> StudySubject::schedules(int count) const {
   if (!drapes()) return {Schedule{}};
   const DrapeProblem problem(base_);
@@ -306,6 +287,27 @@ std::vector<StudyRun> StudySubject::run(const Settings& settings,
   return runs;
 }
 
+std::vector<Vector2d> compared_points(const Ply& ply) {
+  const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
+  std::vector<Vector2d> points;
+  for (int j = 0; j < kSamples; ++j) {
+    for (int i = 0; i < kSamples; ++i) {
+      const Vector2d share(double(i) / (kSamples - 1), double(j) / (kSamples - 1));
+      points.push_back(box.min() + share.cwiseProduct(box.sizes()));
+    }
+  }
+  return points;
+}
+
+double rms_distance(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b) {
+  double sum = 0, count = 0;
+  for (size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+    const double square = (a[k] - b[k]).squaredNorm();
+    if (std::isfinite(square)) sum += square, count += 1;
+  }
+  return count > 0 ? std::sqrt(sum / count) : std::numeric_limits<double>::quiet_NaN();
+}
+
 std::map<std::string, double> study_errors(const std::vector<StudyRun>& runs,
                                            const std::vector<StudyRun>& reference, bool drapes) {
   std::map<std::string, double> errors;
@@ -322,7 +324,7 @@ std::map<std::string, double> study_errors(const std::vector<StudyRun>& runs,
       if (leads && value != 0) keep("relative", error / std::abs(value));
       if (leads && value != 0) keep("relative_" + name, error / std::abs(value));
     }
-    keep("places", rms_distance(runs[k], reference[k]));
+    keep("places", rms_distance(runs[k].places, reference[k].places));
     keep("shear_deg", rms_difference(runs[k].shear_deg, reference[k].shear_deg));
   }
   return errors;

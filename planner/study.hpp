@@ -53,8 +53,6 @@ class StudySubject {
   /// @throws std::invalid_argument with all that is wrong with them.
   [[nodiscard]] Case with(const Settings& settings) const;
 
-  /// The baselines by name; one unnamed entry for a case without grippers.
-  [[nodiscard]] std::vector<std::string> baselines() const;
   /// Different schedules within the limits of the rig: the baselines first, then waves and free strokes in
   /// turn.
   [[nodiscard]] std::vector<Schedule> schedules(int count) const;
@@ -73,6 +71,12 @@ class StudySubject {
   Settings at_;
   Case base_;
 };
+
+/// A regular grid of points (u, v) over the ply's bounding box [m]: where places are compared.
+std::vector<Eigen::Vector2d> compared_points(const Ply& ply);
+
+/// R.m.s. distance of points in pairs; those that are not finite are left out, NaN if none is left.
+double rms_distance(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b);
 
 /// Errors of a run against the reference's, by name: "separation", "boundary_offset", ... (figures) [SI],
 /// "places" (r.m.s. distance) [m], "shear_deg" (r.m.s.) [deg], and "relative", the largest relative error of
@@ -125,7 +129,7 @@ struct NoiseRow {
   std::string name;
   Settings settings;
   double step = 0;          ///< between the points, in the family's coordinates
-  double objective = 0;     ///< mean
+  double objective = 0;     ///< median
   double noise = 0;         ///< standard deviation
   bool consistent = false;  ///< see NoiseEstimate
 };

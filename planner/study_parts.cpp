@@ -32,17 +32,11 @@ double timed(int repeats, const Work& work) {
   return median(times);
 }
 
-/// Places of a regular grid of the ply on the mold.
+/// Places of the compared points on the mold.
 std::vector<Vector3d> mapped_grid(const Case& value, const MapResult& map) {
-  constexpr int kSide = 21;
   std::vector<Vector3d> places;
-  const Eigen::AlignedBox2d box = bounding_box(corners_of(value.ply));
-  for (int j = 0; j < kSide; ++j) {
-    for (int i = 0; i < kSide; ++i) {
-      const Eigen::Vector2d share(double(i) / (kSide - 1), double(j) / (kSide - 1));
-      places.push_back(mapped_point(map.net, *value.mold, box.min() + share.cwiseProduct(box.sizes())));
-    }
-  }
+  for (const Eigen::Vector2d& point : compared_points(value.ply))
+    places.push_back(mapped_point(map.net, *value.mold, point));
   return places;
 }
 
@@ -50,12 +44,6 @@ double largest_distance(const std::vector<Vector3d>& a, const std::vector<Vector
   double largest = 0;
   for (size_t k = 0; k < a.size(); ++k) largest = std::max(largest, (a[k] - b[k]).norm());
   return largest;
-}
-
-double rms_distance(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) {
-  double sum = 0;
-  for (size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]).squaredNorm();
-  return std::sqrt(sum / double(a.size()));
 }
 
 /// The number that a setting gives to its only knob; the mean step for the step's safety, which is what
