@@ -1,52 +1,52 @@
 #!/usr/bin/env bash
-# The house rules that a compiler does not check: which way includes run, who may touch which library, what lies at the
-# top level. Usage: layers.sh SOURCE_DIR
+# The house rules that a compiler does not check: which way includes run, who may touch which library, how large a room
+# is, what lies at the top level. Usage: layers.sh SOURCE_DIR
 set -uo pipefail
 cd "$1" || exit 1
+
+# All rooms, from the ground up: a source may include what lies in its own room and in those before it.
+rooms=(mapping
+  fem/{core,mesh,law,shell,rig,terms,model,run}
+  planner/{base,input,case,reach,drape,stress,search,report,study,cli})
+least_files=4 most_files=15
+
 failures=0
 fail() { echo "FAILED: $*" >&2; failures=$((failures + 1)); }
-
-# forbid REASON PATTERN FILES...: no line of the files may match.
-forbid() {
-  local reason=$1 pattern=$2 found
-  shift 2
-  found=$(grep -nE -- "$pattern" "$@" /dev/null)
-  [ -z "$found" ] || fail "$reason:"$'\n'"$found"
-}
-# except LIST FILES...: the files whose names are not in the list of words.
-except() {
-  local list=" $1 " file
-  shift
-  for file in "$@"; do [[ $list == *" $(basename "$file") "* ]] || echo "$file"; done
-}
-
-shopt -s nullglob
-mapping=(mapping/*.[ch]pp) fem=(fem/*.[ch]pp) planner=(planner/*.[ch]pp)
-[ ${#mapping[@]} -ge 5 ] && [ ${#fem[@]} -ge 10 ] && [ ${#planner[@]} -ge 20 ] || fail "sources not found below $PWD"
-
 include='^[[:space:]]*#[[:space:]]*include[[:space:]]*'
-forbid "includes run planner -> fem -> mapping" "${include}[<\"](\.\./)?(fem|planner)/" "${mapping[@]}"
-forbid "includes run planner -> fem -> mapping" "${include}[<\"](\.\./)?planner/" "${fem[@]}"
-forbid "include paths start at the root" "${include}\"(\.|[^/\"]*\")" "${mapping[@]}" "${fem[@]}" "${planner[@]}"
-forbid "sources do not include tests" "${include}\"tests/" "${mapping[@]}" "${fem[@]}" "${planner[@]}"
+mapfile -t sources < <(find mapping fem planner -name '*.[ch]pp' | sort)
+[ ${#sources[@]} -ge 100 ] || fail "sources not found below $PWD"
 
-# JSON: what reads and writes files and results. Methods (search, scoring, reach, strategy) know nothing of it.
-json="case_document.hpp case_file.cpp case_file.hpp case_values.hpp case_writer.hpp json_text.hpp result_fields.hpp
-  evaluation_log.cpp schedule_file.cpp plan.cpp cli.cpp cli.hpp"
-json=$(echo $json $(cd planner && echo cli_*.cpp study.cpp study_files.* study_runner.cpp stress.hpp stress_table.cpp *_result_file.cpp report_file.cpp material_file.cpp))
-mapfile -t others < <(except "$json" "${planner[@]}")
-forbid "JSON is for reading and writing files" "${include}<nlohmann/" "${mapping[@]}" "${fem[@]}" "${others[@]}"
+for source in "${sources[@]}"; do
+  [[ " ${rooms[*]} " == *" $(dirname "$source") "* ]] || fail "$source lies in no room"
+done
+below=""
+for room in "${rooms[@]}"; do
+  files=("$room"/*.[ch]pp)
+  [ ${#files[@]} -ge $least_files ] && [ ${#files[@]} -le $most_files ] ||
+    fail "$room has ${#files[@]} files; a room has $least_files to $most_files"
+  below+=" $room "
+  while IFS=: read -r file line path; do
+    [[ $below == *" $(dirname "$path") "* ]] || fail "$file:$line: $room lies below, or beside, what it includes: $path"
+  done < <(grep -nHoE "${include}\"[^\"]+\"" "${files[@]}" | sed -E 's/#.*"([^"]+)"/\1/')
+done
 
-mapfile -t others < <(except "parallel.cpp" "${planner[@]}")
-forbid "OpenMP only in planner/parallel.cpp" "${include}<omp\.h>|^[[:space:]]*#[[:space:]]*pragma[[:space:]]+omp" \
-  "${mapping[@]}" "${fem[@]}" "${others[@]}"
-mapfile -t others < <(except "vtu.cpp" "${planner[@]}")
-forbid "VTK files are written in planner/vtu.cpp" "<VTKFile" "${mapping[@]}" "${fem[@]}" "${others[@]}"
-# Third-party optimisers stay behind one source each.
-mapfile -t others < <(except "nlopt_search.cpp" "${planner[@]}")
-forbid "NLopt only in planner/nlopt_search.cpp" "${include}<nlopt" "${mapping[@]}" "${fem[@]}" "${others[@]}"
-mapfile -t others < <(except "reach_ipopt.cpp reach_ipopt.hpp reach_nlp.cpp reach_nlp.hpp" "${planner[@]}")
-forbid "Ipopt only in planner/reach_*" "${include}[<\"](coin/)?Ip[A-Z]" "${mapping[@]}" "${fem[@]}" "${others[@]}"
+# only_in ROOM REASON PATTERN: lines that match lie in this room alone.
+only_in() {
+  local found
+  found=$(grep -nE -- "$3" "${sources[@]}" | grep -v "^$1/")
+  [ -z "$found" ] || fail "$2:"$'\n'"$found"
+}
+# in_one_file REASON PATTERN: one file has all lines that match, and there are some.
+in_one_file() {
+  local found
+  found=$(grep -lE -- "$2" "${sources[@]}")
+  [ "$(wc -w <<<"$found")" = 1 ] || fail "$1: ${found:-nowhere}"
+}
+only_in planner "JSON is for planner's input and results" "${include}<nlohmann/"
+only_in planner/reach "Ipopt is for the reach problem" "${include}[<\"](coin/)?Ip[A-Z]"
+in_one_file "threads live in one file" "${include}<omp\.h>|^[[:space:]]*#[[:space:]]*pragma[[:space:]]+omp"
+in_one_file "VTK files are written in one file" "<VTKFile"
+in_one_file "NLopt stays behind one source" "${include}<nlopt"
 
 allowed=" CMakeLists.txt CMakePresets.json LICENSE README.md cases fem mapping planner scripts tests "
 # The tree may belong to another user than the one who tests: git would refuse it.

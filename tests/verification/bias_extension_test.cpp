@@ -13,9 +13,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "fem/simulate.hpp"
-#include "fem/workspace.hpp"
-#include "tests/fem/scenes.hpp"
+#include "fem/run/simulate.hpp"
+#include "fem/run/workspace.hpp"
+#include "tests/fem/run/scenes.hpp"
 
 namespace drapeplan {
 namespace {

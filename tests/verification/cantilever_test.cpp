@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "fem/simulate.hpp"
+#include "fem/run/simulate.hpp"
 #include "tests/verification/kit.hpp"
 
 namespace drapeplan {

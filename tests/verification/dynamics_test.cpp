@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "fem/state_file.hpp"
+#include "fem/run/state_file.hpp"
 #include "tests/verification/kit.hpp"
 
 namespace drapeplan {

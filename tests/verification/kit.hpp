@@ -8,9 +8,9 @@
 #include <functional>
 #include <string>
 
-#include "fem/model.hpp"
-#include "fem/workspace.hpp"
-#include "tests/fem/scenes.hpp"
+#include "fem/model/model.hpp"
+#include "fem/run/workspace.hpp"
+#include "tests/fem/run/scenes.hpp"
 
 namespace drapeplan::test {
 

@@ -1,6 +1,6 @@
 // Mass on the stretch of fibres changes the step and not the motion: a sheet swings from two corners, a strip
 // hangs at rest.
-#include "fem/simulate.hpp"
+#include "fem/run/simulate.hpp"
 #include "tests/verification/kit.hpp"
 
 namespace drapeplan {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fem/simulate.hpp"
-#include "tests/fem/drapes.hpp"
+#include "fem/run/simulate.hpp"
+#include "tests/fem/run/drapes.hpp"
 
 namespace drapeplan {
 namespace {

@@ -1,5 +1,5 @@
-// In place of fem/contact.cpp.
-#include "fem/contact.hpp"
+// In place of fem/terms/contact.cpp.
+#include "fem/terms/contact.hpp"
 
 #include "tests/bench/absent/absent.hpp"
 

@@ -1,5 +1,5 @@
-// In place of fem/fibre_inertia.cpp.
-#include "fem/fibre_inertia.hpp"
+// In place of fem/terms/fibre_inertia.cpp.
+#include "fem/terms/fibre_inertia.hpp"
 
 #include "tests/bench/absent/absent.hpp"
 

@@ -1,5 +1,5 @@
-// In place of fem/gripper_rig.cpp, fem/link_system.cpp and fem/rotation_stop.cpp.
-#include "fem/gripper_rig.hpp"
+// In place of fem/rig/gripper_rig.cpp, fem/rig/interlinks.cpp and fem/rig/rotation_stop.cpp.
+#include "fem/rig/gripper_rig.hpp"
 
 #include "tests/bench/absent/absent.hpp"
 

@@ -1,6 +1,5 @@
-// In place of fem/grips.cpp.
-#include "fem/grips.hpp"
-
+// In place of fem/run/move_grips.cpp and fem/terms/grips.cpp.
+#include "fem/run/move_grips.hpp"
 #include "tests/bench/absent/absent.hpp"
 
 namespace drapeplan {

@@ -1,5 +1,5 @@
-// In place of fem/loads.cpp.
-#include "fem/loads.hpp"
+// In place of fem/terms/loads.cpp.
+#include "fem/terms/loads.hpp"
 
 #include "tests/bench/absent/absent.hpp"
 

@@ -1,7 +1,7 @@
-// In place of fem/workspace.cpp: the loops over nodes as they would be written if there were nothing but a
-// shell. What they cost less than the real ones is what the possibility of terms, damping, pads and grips
+// In place of fem/run/workspace.cpp: the loops over nodes as they would be written if there were nothing but
+// a shell. What they cost less than the real ones is what the possibility of terms, damping, pads and grips
 // costs a bare sheet.
-#include "fem/workspace.hpp"
+#include "fem/run/workspace.hpp"
 #include "tests/bench/absent/absent.hpp"
 
 namespace drapeplan {

@@ -1,7 +1,7 @@
-// In place of fem/shell.cpp, fem/shell_points_*.cpp and fem/rates.cpp: shells without rates only.
+// In place of fem/shell/shell.cpp, fem/shell/points_*.cpp and fem/law/rates.cpp: shells without rates only.
 #include <stdexcept>
 
-#include "fem/shell_term.hpp"
+#include "fem/shell/term.hpp"
 #include "tests/bench/absent/absent.hpp"
 
 namespace drapeplan {

@@ -1,0 +1,82 @@
+// Everything that a run needs to continue, and nothing else.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "fem/core/lanes.hpp"
+
+namespace drapeplan {
+
+/// Books of work, one entry each. See Energies for their meaning.
+enum class Book {
+  internal,
+  gravity,
+  contact,
+  friction,
+  damping,
+  actuator,
+  interlink,
+  stop,
+  load,
+  release,
+  grip,
+  added_mass
+};
+inline constexpr size_t kBooks = 12;
+
+/// A rigid pad: its centre on the ply's mid-surface, its orientation and its half-step velocities.
+struct PadState {
+  Eigen::Vector3d centre{0, 0, 0};
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d velocity{0, 0, 0};          ///< at t - dt/2 [m/s]
+  Eigen::Vector3d angular_velocity{0, 0, 0};  ///< at t - dt/2 [rad/s]
+  bool released = false;                      ///< its nodes move on their own
+};
+
+/// The worst that a run has seen so far, at the instants at which it is watched.
+struct RunRecord {
+  double fibre_strain = 0;       ///< tension at mid-thickness [-]
+  double fibre_compression = 0;  ///< magnitude [-]
+  double actuator_force = 0;     ///< [N], every step
+  double link_error = 0;         ///< of interlinks and guides [m], every step
+  double penetration = 0;        ///< of the ply's underside into the mold [m]
+  double energy = 0;             ///< largest magnitude of a book [J]
+  double balance = 0;            ///< largest |balance| of the books [J]
+  double hourglass_share = 0;    ///< stored hourglass energy over internal energy
+  double kinetic_ratio = 0;      ///< kinetic energy of the ply's free nodes over internal energy
+  double last_motion = 0;        ///< when the ply was last faster than the rest criterion [s]
+};
+
+/// Positions at t, velocities at t - dt_before / 2 (central differences with a changing step).
+struct State {
+  std::int64_t step = 0;
+  double time = 0;              ///< [s], of the simulation
+  double dt = 0;                ///< from t to the next positions [s]
+  double dt_before = 0;         ///< from the last positions to t [s]
+  double stable_dt = 0;         ///< stable step when dt was last chosen [s]
+  VectorField x, v;             ///< nodes [m], [m/s]
+  VectorField d, w;             ///< unit directors and their rate of change, normal to them [1/s]
+  VectorField anchor;           ///< where a node sticks to the mold [m]; empty without friction
+  std::vector<double> stuck;    ///< 1: the node touched the mold at the last step; empty without friction
+  std::vector<double> history;  ///< what elements remember of their strains; see fem/shell/term.hpp
+  /// Directions of edges along warp and weft when the step was last chosen, by their first nodes; empty
+  /// without selective mass scaling.
+  std::array<VectorField, 2> edges;
+  std::vector<PadState> pads;  ///< empty without a rig
+  /// How the bounds of elements were spread over nodes when the step was last chosen [padded]: see
+  /// CornerShares. Empty where one step is chosen for good.
+  std::vector<double> lightness;
+  std::array<double, kBooks> work{};  ///< done on the moving masses since the start [J]
+  RunRecord record;                   ///< not part of the hash
+
+  /// Time from the half-step velocities before t to those after it [s].
+  [[nodiscard]] double kick_time() const { return 0.5 * (dt_before + dt); }
+};
+
+/// FNV-1a over all bits of the state that belong to nodes and pads (padding left out).
+std::uint64_t hash_state(const State& state, int node_count);
+
+}  // namespace drapeplan

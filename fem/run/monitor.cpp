@@ -1,0 +1,220 @@
+#include "fem/run/monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "fem/run/move_grips.hpp"
+
+namespace drapeplan {
+namespace {
+
+/// Far beyond what any carbon fibre bears (2 %): what comes here is numerics, which books alone cannot see.
+constexpr double kTornStrain = 0.2;
+
+/// Its sine is 0.98: up to there the shell tabulates the law of shear, which goes on linearly in the sine.
+const double kTabulatedShear = std::asin(0.98);
+
+/// Of the largest book. Booked and stored work differ by the square of the step; measured below 1e-4.
+constexpr double kGivenShare = 0.01;
+
+/// By which stored energy may exceed what was booked, of the largest book: where all of it rings at the
+/// highest frequency, on contact springs of a hundred times the default, they differ by more than 1 %.
+constexpr double kHeldShare = 0.05;
+
+/// How far a place is off the part of the x-y plane that the mold covers, in x or y [m].
+double beyond(const Extent& extent, double x, double y) {
+  return std::max(
+      {extent.lower.x() - x, x - extent.upper.x(), extent.lower.y() - y, y - extent.upper.y(), 0.0});
+}
+
+std::string millimetres(double length) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g mm", 1e3 * length);
+  return text;
+}
+
+/// Strain of round-off, far from the origin: what a ply stores by it is nothing.
+constexpr double kRoundStrain = 1e-9;
+
+/// A ply this fast stands still [m/s]: books below its kinetic energy are round-off, which has no sign.
+constexpr double kStill = 1e-9;
+
+double largest_energy(const Model& model, const State& state) {
+  return std::max(state.record.energy, 0.5 * model.free_mass() * kStill * kStill);
+}
+
+}  // namespace
+
+Monitor::Monitor(const Model& model) : model_(model) {
+  half_ = model.flat_state(0);  // takes its room
+  for (const double part : nodal_areas(model.scene().mesh)) area_ += part;
+  if (!model.scene().mold) return;
+  const State& flat = half_;
+  for (size_t n = 0; n < size_t(model.node_count()); ++n)
+    overhang_ = std::max(overhang_, beyond(model.scene().mold->extent(), flat.x.x[n], flat.x.y[n]));
+}
+
+Energies energies(const Model& model, const State& state) {
+  const auto work = [&state](Book book) { return state.work[size_t(book)]; };
+  Energies e;
+  e.kinetic = kinetic_energy(model, state) - work(Book::added_mass);
+  e.internal = -work(Book::internal);
+  e.external = work(Book::gravity) + work(Book::actuator) + work(Book::load) + work(Book::grip);
+  e.friction = -work(Book::friction);
+  e.contact = -work(Book::contact);
+  e.damping = -work(Book::damping);
+  e.constraint = -work(Book::interlink) - work(Book::stop) - work(Book::release);
+  return e;
+}
+
+/// Books end half a step before the state: stored energy is taken there, too. In the first steps of a run the
+/// two still differ by a share of themselves.
+bool Monitor::holds_more(const State& state, double limit) {
+  constexpr std::int64_t kBooksSettled = 200;
+  if (state.step < kBooksSettled) return false;
+  half_ = state;
+  const auto back = [&state](VectorField& place, const VectorField& rate) {
+    for (size_t n = 0; n < place.x.size(); ++n) {
+      place.x[n] -= 0.5 * state.dt_before * rate.x[n];
+      place.y[n] -= 0.5 * state.dt_before * rate.y[n];
+      place.z[n] -= 0.5 * state.dt_before * rate.z[n];
+    }
+  };
+  back(half_.x, state.v);
+  back(half_.d, state.w);
+  const ShellEnergy stored = model_.shell().stored_energy(half_);
+  const double rounding = 0.5 * model_.shell().borne_stretch() * area_ * kRoundStrain * kRoundStrain;
+  return stored.fabric + stored.hourglass > limit + rounding;
+}
+
+bool Monitor::look(State& state, RunReport& report) {
+  RunRecord& record = state.record;
+  const Energies now = energies(model_, state);
+  const double balance =
+      now.kinetic + now.internal + now.friction + now.contact + now.damping + now.constraint - now.external;
+  for (const double part :
+       {now.kinetic, now.internal, now.external, now.friction, now.contact, now.damping, now.constraint}) {
+    record.energy = std::max(record.energy, std::abs(part));
+  }
+  if (!std::isfinite(balance)) return fail(state, "energy is not finite", report);
+  // Springs and viscosity start empty: what the ply gave it must have taken. A step that is too long pumps
+  // energy out of it, and the books of that still close.
+  const double largest = largest_energy(model_, state);
+  if (now.internal < -kGivenShare * largest)
+    return fail(
+        state,
+        "the ply gives energy that it never took: the step is unstable; lower step_safety or step_interval",
+        report);
+  if (holds_more(state, now.internal + kHeldShare * largest))
+    return fail(
+        state,
+        "the ply holds energy that it never took: the step was unstable; lower step_safety or step_interval",
+        report);
+  if (std::min(now.contact, now.friction) < -kGivenShare * largest)
+    return fail(state, "contact gives energy that it never took: the step is unstable; lower step_safety",
+                report);
+  if (state.work[size_t(Book::added_mass)] > kGivenShare * largest)
+    return fail(state, "mass added to fibres gives energy that it never took: lower selective_scaling",
+                report);
+  record.balance = std::max(record.balance, std::abs(balance));
+  for (size_t n = 0; n < size_t(model_.node_count()); ++n) {
+    if (std::isfinite(state.x.x[n]) && std::isfinite(state.x.y[n]) && std::isfinite(state.x.z[n]) &&
+        std::isfinite(state.v.x[n]) && std::isfinite(state.v.y[n]) && std::isfinite(state.v.z[n])) {
+      continue;
+    }
+    return fail(state, "not finite at node " + std::to_string(n), report);
+  }
+  double shear = 0;
+  model_.shell().strains(state, strains_);
+  for (const auto* list : {&strains_.warp_strain, &strains_.weft_strain}) {
+    for (const double strain : *list) {
+      record.fibre_strain = std::max(record.fibre_strain, strain);
+      record.fibre_compression = std::max(record.fibre_compression, -strain);
+    }
+  }
+  if (!(std::max(record.fibre_strain, record.fibre_compression) <= kTornStrain))
+    return fail(state, "a fibre is torn or the step is unstable", report);
+  for (const double angle : strains_.shear) shear = std::max(shear, std::abs(angle));
+  if (!(shear <= kTabulatedShear))
+    return fail(state, "an element is sheared by more than 78.5 deg, where the law of shear ends", report);
+  if (!model_.scene().mold) return true;
+  note_penetration(state);
+  const double thickness = model_.scene().fabric.thickness;
+  // A gap is never negative: a ply inside the mold would look perfectly draped.
+  if (record.penetration > thickness)
+    return fail(
+        state,
+        "the ply came " + millimetres(record.penetration) + " inside the mold: more than its thickness",
+        report);
+  if (slid_ > overhang_ + thickness)
+    return fail(state, "the ply slid " + millimetres(slid_) + " over the mold's edge, where its extent ends",
+                report);
+  return true;
+}
+
+// The distance to the tangent plane at the vertical foot (5e-8 m on the seed's mold) tells who is worth
+// asking.
+void Monitor::note_penetration(State& state) {
+  slid_ = 0;
+  const Mold& mold = *model_.scene().mold;
+  const double surface = 0.5 * model_.scene().fabric.thickness;
+  double z[kChunk], zx[kChunk], zy[kChunk];
+  for (int first = 0; first < model_.node_count(); first += kChunk) {
+    const int chunk = std::min(kChunk, model_.node_count() - first);
+    mold.heights(chunk, &state.x.x[size_t(first)], &state.x.y[size_t(first)], z, zx, zy);
+    for (int k = 0; k < chunk; ++k) {
+      const auto n = size_t(first + k);
+      const double above = (state.x.z[n] - z[k]) / std::sqrt(1 + zx[k] * zx[k] + zy[k] * zy[k]);
+      if (surface - above > 0) slid_ = std::max(slid_, beyond(mold.extent(), state.x.x[n], state.x.y[n]));
+      if (!(surface - above > state.record.penetration)) continue;  // not defined here, or no worse
+      const double distance = mold.closest({state.x.x[n], state.x.y[n], state.x.z[n]}).signed_distance;
+      state.record.penetration = std::max(state.record.penetration, surface - distance);
+    }
+  }
+}
+
+bool Monitor::fail(const State& state, const std::string& what, RunReport& report) {
+  std::ostringstream text;
+  text << what << ", seen at step " << state.step << ", t = " << state.time << " s";
+  report.status = RunStatus::diverged;
+  report.message = text.str();
+  return false;
+}
+
+void Monitor::compare_energies(State& state) const {
+  const double internal = -state.work[size_t(Book::internal)];
+  if (!(internal > 0)) return;
+  RunRecord& record = state.record;
+  record.kinetic_ratio = std::max(record.kinetic_ratio, ply_kinetic_energy(model_, state) / internal);
+  record.hourglass_share =
+      std::max(record.hourglass_share, model_.shell().stored_energy(state).hourglass / internal);
+}
+
+void Monitor::close(State& state, RunReport& report) const {
+  report.energy = energies(model_, state);
+  report.energy.hourglass = model_.shell().stored_energy(state).hourglass;
+  report.energy.largest = state.record.energy;
+  const double largest = largest_energy(model_, state);
+  report.energy.balance_error = largest > 0 ? state.record.balance / largest : 0;
+  report.largest_kinetic_ratio = state.record.kinetic_ratio;
+  report.largest_hourglass_share = state.record.hourglass_share;
+  report.largest_link_error = state.record.link_error;
+  report.largest_penetration = state.record.penetration;
+}
+
+Snapshot take_snapshot(const Model& model, const State& state, const RigDrive& drive) {
+  Snapshot out;
+  out.time = state.time * drive.time_scaling;
+  for (size_t n = 0; n < size_t(model.node_count()); ++n) {
+    out.position.emplace_back(state.x.x[n], state.x.y[n], state.x.z[n]);
+    out.director.emplace_back(state.d.x[n], state.d.y[n], state.d.z[n]);
+  }
+  model.shell().strains(state, out);
+  if (!model.scene().grips.empty()) out.grip_force = grip_forces(model, state);
+  if (model.rig() && drive.schedule) model.rig()->snapshot(state, drive, out);
+  return out;
+}
+
+}  // namespace drapeplan

@@ -1,0 +1,42 @@
+// Watches a run: books, finiteness, strains; turns what it saw into the report.
+#pragma once
+
+#include "fem/core/report.hpp"
+#include "fem/run/simulate.hpp"
+#include "fem/run/workspace.hpp"
+
+namespace drapeplan {
+
+class Monitor {
+ public:
+  explicit Monitor(const Model& model);
+
+  /// Looks at a state and notes the worst in its record. Returns false, with the reason in the report, if the
+  /// run cannot go on.
+  bool look(State& state, RunReport& report);
+
+  /// Kinetic and hourglass energy against internal energy, into the state's record.
+  void compare_energies(State& state) const;
+
+  /// What only the end tells, and the record.
+  void close(State& state, RunReport& report) const;
+
+ private:
+  void note_penetration(State& state);
+  bool holds_more(const State& state, double limit);
+  static bool fail(const State& state, const std::string& what, RunReport& report);
+
+  const Model& model_;
+  double overhang_ = 0;  ///< of the flat start over the mold's edge [m]
+  double area_ = 0;      ///< of the ply [m^2]
+  double slid_ = 0;      ///< of nodes that touch at the last look, over it [m]
+  State half_;           ///< half a step before what is looked at; kept like strains_
+  Snapshot strains_;     ///< kept, so that looking allocates nothing after the first time
+};
+
+/// Energies of a state, without the figures that need a history.
+Energies energies(const Model& model, const State& state);
+
+Snapshot take_snapshot(const Model& model, const State& state, const RigDrive& drive);
+
+}  // namespace drapeplan

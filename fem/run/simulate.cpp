@@ -1,0 +1,183 @@
+#include "fem/run/simulate.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "fem/run/monitor.hpp"
+#include "fem/run/move_grips.hpp"
+#include "fem/run/stable_step.hpp"
+#include "fem/run/workspace.hpp"
+#include "fem/terms/contact.hpp"
+
+namespace drapeplan {
+namespace {
+
+constexpr double kMostSteps = 1e10;   // weeks of run time: a wrong unit or a degenerate mesh, not a plan
+constexpr int kLooks = 200;           // per run: 0.5 % of it is lost at most by divergence
+constexpr int kTenths = 10;           // at whose ends energies are compared, from the second on
+constexpr int kRestInterval = 32;     // steps between two looks at the ply's speed
+constexpr double kTimeSlack = 1e-12;  // of the duration: round-off of summed steps
+
+/// Height of the flat ply at the start: all joints stand at the same height.
+double start_height(const Model& model, const RunRequest& request) {
+  if (!model.rig()) return model.scene().start_height;
+  if (!request.schedule) throw std::invalid_argument("simulate: a rig needs a schedule");
+  model.rig()->check(*request.schedule);
+  return request.schedule->paths.front().front().z - model.scene().rig->joint_offset;
+}
+
+/// The mold is asked vertically, with its slope: a ply that starts inside it would be thrown out.
+void refuse_start_in_mold(const Model& model, const State& state) {
+  constexpr double kSlack = 0.02;  // of the thickness: round-off, and what a ply's weight sinks in
+  const double thickness = model.scene().fabric.thickness;
+  for (size_t n = 0; n < size_t(model.node_count()); ++n) {
+    const Jet jet = model.scene().mold->jet(state.x.x[n], state.x.y[n]);
+    const double slope = std::min(std::hypot(jet.zx, jet.zy), kSteepestContact);
+    const double stretch = std::hypot(1.0, slope);
+    const double inside = 0.5 * thickness - (state.x.z[n] - jet.z) / stretch;
+    if (inside > kSlack * thickness) {  // false where the mold is not defined
+      throw std::invalid_argument(
+          "simulate: the flat ply's underside starts " + std::to_string(1e3 * inside) +
+          " mm below the mold at x = " + std::to_string(state.x.x[n]) +
+          " m, y = " + std::to_string(state.x.y[n]) + " m: check its place and the start height");
+    }
+  }
+}
+
+/// Where the run stands on the clock of the simulation [s].
+struct Clock {
+  Clock(const Model& model, const RunRequest& request) {
+    const double scaling = model.scene().options.time_scaling;
+    end = request.duration > 0 ? request.duration : (request.schedule ? request.schedule->duration() : 0);
+    if (!(end > 0)) throw std::invalid_argument("simulate: neither a schedule nor a duration is given");
+    end /= scaling;
+    pause = request.pause > 0 ? request.pause / scaling : end;
+    motion_end = request.schedule ? request.schedule->last_motion() / scaling : 0;
+    for (const Grip& grip : model.scene().grips) {
+      if (!grip.velocity.isZero()) motion_end = end;
+    }
+    if (!(end / model.dt() <= kMostSteps))
+      throw std::invalid_argument("simulate: the run would need more than 1e10 steps");
+  }
+  [[nodiscard]] bool ended(const State& state) const { return state.time >= end * (1 - kTimeSlack); }
+  /// Number of equal parts of the run that have passed.
+  [[nodiscard]] std::int64_t passed(double time, std::int64_t parts) const {
+    return std::int64_t(std::floor(time / end * double(parts) * (1 + kTimeSlack)));
+  }
+  /// Whether the last step has passed the end of one of so many parts.
+  [[nodiscard]] bool crossed(const State& state, std::int64_t parts) const {
+    return passed(state.time, parts) > passed(state.time - state.dt_before, parts);
+  }
+  double end = 0, pause = 0, motion_end = 0;
+};
+
+/// The step from the state's positions to the next: chosen anew every `step_interval` steps, and cut at the
+/// end of the run.
+void choose_step(const Model& model, const Clock& clock, State& state, Workspace& work) {
+  const FemOptions& options = model.scene().options;
+  if (options.step_interval == 0) {
+    state.dt = model.dt();
+  } else if (state.step % options.step_interval == 0) {
+    state.stable_dt = stable_step(model, state, work.step);
+    if (model.fibre_inertia()) {
+      model.fibre_inertia()->aim(state);
+      work.inertia.ready = false;
+    }
+    state.dt = std::min(options.step_safety * state.stable_dt, model.servo_dt());
+    if (state.step == 0) state.dt_before = state.dt;
+  }
+  state.dt = std::min(state.dt, clock.end - state.time);
+}
+
+/// True if the ply has been at rest for long enough, after all commanded motion.
+bool at_rest(const Model& model, const Clock& clock, State& state) {
+  const RestCriterion& rest = *model.scene().rest;
+  if (state.step % kRestInterval == 0) {
+    const bool moves = 2 * ply_kinetic_energy(model, state) > model.free_mass() * rest.speed * rest.speed;
+    if (moves || state.time < clock.motion_end) state.record.last_motion = state.time;
+  }
+  return state.time - state.record.last_motion >= rest.hold;
+}
+
+State first_state(const Model& model, const RunRequest& request) {
+  if (request.from) return *request.from;
+  State state = model.flat_state(start_height(model, request));
+  if (model.scene().mold) refuse_start_in_mold(model, state);
+  return state;
+}
+
+}  // namespace
+
+RunResult simulate(const Model& model, const RunRequest& request) {
+  const auto wall = std::chrono::steady_clock::now();
+  const Clock clock(model, request);
+  const RigDrive drive{request.schedule, model.scene().options.time_scaling};
+  RunResult result;
+  RunReport& report = result.report;
+  report.parts = model.report_parts();
+  State& state = result.state;
+  state = first_state(model, request);
+  const std::int64_t first_step = state.step, frames = request.observe ? request.frames : 0;
+  const std::int64_t last_step =
+      request.steps > 0 ? first_step + request.steps : std::numeric_limits<std::int64_t>::max();
+  const std::int64_t spans = std::max<std::int64_t>(frames - 1, 1);
+  std::int64_t frame = state.step == 0 ? 0 : clock.passed(state.time, spans) + 1;
+  Workspace work(model);
+  Monitor monitor(model);
+  bool running = true, rests = false;
+  while (running && !rests && !clock.ended(state) && state.time < clock.pause && state.step < last_step) {
+    if (frame < frames && clock.passed(state.time, spans) >= frame) {
+      request.observe(take_snapshot(model, state, drive));
+      ++frame;
+    }
+    if (model.rig()) model.rig()->let_go(state, drive);
+    choose_step(model, clock, state, work);
+    compute_forces(model, state, work);
+    kick_nodes(model, state, work);
+    if (model.rig()) kick_pads(model, state, drive, work);
+    if (!model.scene().grips.empty()) move_grips(model, state, work);
+    book_work(model, state, work);
+    drift_nodes(model, state);
+    if (model.rig()) model.rig()->drift(state);
+    advance_clock(state);
+
+    if (clock.crossed(state, kLooks)) running = monitor.look(state, report) && work.rig.converged;
+    if (clock.crossed(state, kTenths) && clock.passed(state.time, kTenths) > 1)
+      monitor.compare_energies(state);
+    if (model.scene().rest) rests = at_rest(model, clock, state);
+  }
+
+  result.final = take_snapshot(model, state, drive);
+  if (running) monitor.close(state, report);
+  if (running && clock.ended(state) && frame < frames) request.observe(result.final);
+  if (report.message.empty() && !std::isfinite(state.time)) {
+    report.status = RunStatus::diverged;
+    report.message = "the stable step is not finite: the steps before were unstable; after step " +
+                     std::to_string(state.step);
+  }
+  if (!work.rig.converged && report.status == RunStatus::done) {
+    report.status = RunStatus::diverged;
+    report.message =
+        "interlinks could not be kept at their length: pads are too fast, or the step is unstable; seen at "
+        "step " +
+        std::to_string(state.step) + ", t = " + std::to_string(state.time) + " s";
+  }
+  if (report.message.empty()) {
+    const bool paused = !rests && !clock.ended(state);
+    report.message = rests ? "the ply is at rest" : paused ? "paused, to be continued" : "the time is over";
+    if (paused) report.status = RunStatus::paused;
+  }
+  report.steps = state.step;
+  report.dt = state.time / double(std::max<std::int64_t>(state.step, 1));
+  report.simulated_time = state.time;
+  report.state_hash = hash_state(state, model.node_count());
+  report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+  report.element_updates_per_second = double(state.step - first_step) * model.scene().mesh.element_count() /
+                                      std::max(report.wall_seconds, 1e-9);
+  return result;
+}
+
+}  // namespace drapeplan

@@ -1,0 +1,37 @@
+// One run of a model: explicit central differences from the flat ply to the end of the schedule.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "fem/core/report.hpp"
+#include "fem/core/snapshot.hpp"
+#include "fem/model/model.hpp"
+#include "fem/rig/schedule.hpp"
+
+namespace drapeplan {
+
+struct RunRequest {
+  const Schedule* schedule = nullptr;  ///< needed with a rig: all joints start at the same height
+  double duration = 0;                 ///< of the schedule's clock; 0: until the schedule ends [s]
+  const State* from = nullptr;         ///< goes on from here instead of the flat start
+  double pause =
+      0;  ///< stops at the first step at or after it, to be continued; 0: never [s, schedule's clock]
+  std::int64_t steps = 0;  ///< stops after so many of its own, to be continued; 0: no limit
+  int frames = 0;          ///< snapshots handed to `observe`, equally spaced in time, the start included
+  std::function<void(const Snapshot&)> observe = nullptr;
+};
+
+struct RunResult {
+  RunReport report;
+  Snapshot final;  ///< the last state, also of a diverged run, to look at
+  State state;     ///< the same, to go on from; its `record` has the extremes of the run
+};
+
+/// Runs the model. A run that diverges is a result, never an exception.
+/// A run that pauses and goes on from its state has the same bits as one that never did.
+/// @throws std::invalid_argument if the schedule does not fit the rig, or neither schedule nor duration is
+/// given.
+RunResult simulate(const Model& model, const RunRequest& request);
+
+}  // namespace drapeplan

@@ -1,0 +1,454 @@
+// The shell term of one choice of section points, points across each fibre, and rates.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "fem/law/rates.hpp"
+#include "fem/shell/bounds.hpp"
+#include "fem/shell/shell.hpp"
+#include "fem/shell/tables.hpp"
+
+namespace drapeplan {
+
+/// A run of elements, at most kLanes; idle lanes have the geometry of the last element, and no area.
+struct Block {
+  std::array<std::array<int, size_t(kLanes)>, 4> node;  ///< by corner and lane
+  bool in_row = false;     ///< elements of one row of a grid: nodes of a corner follow each other
+  bool rectangle = false;  ///< all elements are, along the fibres
+  bool twins = false;      ///< there are triangles
+  int used = 0;
+  size_t geometry = 0;  ///< among the different ones: in a rectangle few blocks differ
+};
+
+/// Adds a row's shares of its elements' lower (or upper) corners to nodes: `own` to node `at` and those that
+/// follow, `next` to the nodes after them.
+inline void add_row(double* sum, size_t at, const Lanes& own, const Lanes& next) {
+  store(load(sum + at) + (own + shifted_up(next)), sum + at);
+  sum[at + size_t(kLanes)] += next[size_t(kLanes) - 1];
+}
+
+/// A vector field as the corners of blocks see it. In a row, corners 1 and 2 are the next nodes of corners 0
+/// and 3, so that lanes load without gathering and sums of neighbours are made before they are stored.
+template <class T>
+struct Rows {
+  template <class Field>
+  explicit Rows(Field& field) : part{field.x.data(), field.y.data(), field.z.data()} {}
+
+  [[nodiscard]] Corners<Lanes> in_row(const Block& block) const {
+    const auto lower = size_t(block.node[0][0]), upper = size_t(block.node[3][0]);
+    return {lanes(lower), lanes(lower + 1), lanes(upper + 1), lanes(upper)};
+  }
+  [[nodiscard]] Corners<Lanes> anywhere(const Block& block) const {
+    Corners<Lanes> out;
+    for (size_t c = 0; c < 4; ++c) {
+      const auto& node = block.node[c];
+      out[c] = {pick(part[0], node), pick(part[1], node), pick(part[2], node)};
+    }
+    return out;
+  }
+  [[nodiscard]] Corners<Lanes> corners(const Block& block) const {
+    return block.in_row ? in_row(block) : anywhere(block);
+  }
+  void add_in_row(const Block& block, const Corners<Lanes>& values) const {
+    const auto lower = size_t(block.node[0][0]), upper = size_t(block.node[3][0]);
+    add_row(part[0], lower, values[0].x, values[1].x);
+    add_row(part[1], lower, values[0].y, values[1].y);
+    add_row(part[2], lower, values[0].z, values[1].z);
+    add_row(part[0], upper, values[3].x, values[2].x);
+    add_row(part[1], upper, values[3].y, values[2].y);
+    add_row(part[2], upper, values[3].z, values[2].z);
+  }
+  void add_anywhere(const Block& block, const Corners<Lanes>& values) const {
+    for (size_t c = 0; c < 4; ++c) {
+      for (size_t l = 0; l < size_t(block.used); ++l) {
+        const auto at = size_t(block.node[c][l]);
+        part[0][at] += values[c].x[l];
+        part[1][at] += values[c].y[l];
+        part[2][at] += values[c].z[l];
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] Vec3<Lanes> lanes(size_t at) const {
+    return {load(part[0] + at), load(part[1] + at), load(part[2] + at)};
+  }
+  std::array<T*, 3> part;
+};
+
+struct NoTables {};
+
+template <int N, int A, bool kRates>
+class ShellTerm : public Shell {
+ public:
+  ShellTerm(const Mesh& mesh, const Fabric& fabric, const FemOptions& options)
+      : mesh_(mesh),
+        material_(kernel_material(fabric, options)),
+        fibre_slope_(material_.fibre.largest_slope()),
+        slow_shear_slope_(fabric.shear.slowest().largest_slope()),
+        shear_slope_(slow_shear_slope_),
+        viscous_mass_(options.bulk_viscosity * options.mass_scaling * fabric.areal_density /
+                      (SectionRule<N>::weight[N / 2] * fabric.thickness)),
+        selective_(options.selective_scaling > 1),
+        bulk_viscosity_(options.bulk_viscosity) {
+    if constexpr (kRates) {
+      tables_ = rate_tables(fabric);
+      fibre_slope_ = tables_.fibre.largest_slope(tables_.gain);
+      shear_slope_ = tables_.shear.largest_slope(tables_.gain);
+      lag_rate_ = options.time_scaling / fabric.rate_filter;
+    }
+    for (const auto& quad : mesh.quads) geometry_.push_back(element_geometry(mesh, quad));
+    for (size_t first = 0; first < mesh.quads.size();) first += add_block(first);
+  }
+
+  [[nodiscard]] std::string_view name() const override { return kRates ? "shell with rates" : "shell"; }
+
+  [[nodiscard]] std::vector<Forces> entries() const override {
+    const int n = mesh_.node_count();
+    return {{Book::internal, VectorField(n), VectorField(n)}};
+  }
+
+  void add_stiffness(NodalStiffness& stiffness) const override {
+    const auto all = steepest_section(material_.thickness, fibre_slope_, shear_slope_);
+    add_steepest(all, all, stiffness);
+  }
+  void add_slow_stiffness(NodalStiffness& stiffness) const override {
+    const auto all =
+        steepest_section(material_.thickness, material_.fibre.largest_slope(), slow_shear_slope_);
+    add_steepest(all, all, stiffness);
+  }
+  void add_unborne_stiffness(NodalStiffness& stiffness) const override {
+    const auto all = steepest_section(material_.thickness, fibre_slope_, shear_slope_);
+    auto left = all;
+    left.fibre1 = left.fibre2 = unborne(all.fibre1, 0.0, borne_stretch());
+    add_steepest(left, all, stiffness);
+  }
+  void add_borne_stiffness(NodalStiffness& stiffness) const override {
+    add_steepest(steepest_section(material_.thickness, material_.fibre.largest_slope(), 0),
+                 steepest_section(material_.thickness, 0, 0), stiffness);
+  }
+  [[nodiscard]] std::vector<char> borne() const override {
+    std::vector<char> list;
+    for (const Block& block : blocks_) list.insert(list.end(), size_t(block.used), block.rectangle);
+    return list;
+  }
+  void set_borne_step(double stable_dt) override {
+    viscous_borne_ =
+        bulk_viscosity_ * borne_fibre() * stable_dt * stable_dt / (4 * SectionRule<N>::weight[N / 2]);
+  }
+  [[nodiscard]] double borne_stretch() const override { return borne_fibre() * material_.thickness; }
+
+  DRAPEPLAN_FLATTEN double look_at_sections(const State& state,
+                                            std::vector<double>& sections) const override {
+    const Rows<const double> x(state.x), d(state.d);
+    double* at = sections.data();
+    Lanes steepest(0.0);
+    for (size_t b = 0; b < blocks_.size(); ++b) {
+      const Block& block = blocks_[b];
+      const ElementGeometry<Lanes>& g = geometries_[block.geometry];
+      const Corners<Lanes> place = x.corners(block), along = d.corners(block);
+      auto section = section_tangent<N, A>(g, material_, slopes_of(state, b), place, along);
+      if (selective_ && block.rectangle) {
+        Lanes here = std::experimental::max(section.fibre1.steepest(), section.fibre2.steepest());
+        clear_idle(block, here);
+        steepest = std::experimental::max(steepest, here);
+        leave_unborne(g, motion_products(element_motion(g, place, along)), section);
+      }
+      for (const Lanes* part : section.parts()) {
+        store(*part, at);
+        at += kLanes;
+      }
+    }
+    return (1 + kBorneMargin) * std::experimental::hmax(steepest) / borne_stretch();
+  }
+
+  [[nodiscard]] size_t section_count() const override {
+    return SectionStiffness<Lanes>().parts().size() * slot_stride();
+  }
+
+  DRAPEPLAN_FLATTEN void add_bounds(const std::vector<double>& sections, const std::vector<double>& lightness,
+                                    NodalStiffness& stiffness) const override {
+    const double* at = sections.data();
+    for (const Block& block : blocks_) {
+      const ElementGeometry<Lanes>& g = geometries_[block.geometry];
+      SectionStiffness<Lanes> section;
+      for (Lanes* part : section.parts()) {
+        *part = load(at);
+        at += kLanes;
+      }
+      Lanes bound = element_bound(g, material_, section, corner_shares(block, lightness));
+      if (block.used < kLanes) clear_idle(block, bound);
+      const Lanes turn = bound * gyration_squared(g, material_.thickness);
+      if (block.in_row) {
+        for (const size_t c : {size_t(0), size_t(3)}) {
+          add_row(stiffness.translation.data(), size_t(block.node[c][0]), bound, bound);
+          add_row(stiffness.rotation.data(), size_t(block.node[c][0]), turn, turn);
+        }
+        continue;
+      }
+      for (size_t c = 0; c < 4; ++c) {
+        for (size_t l = 0; l < size_t(block.used); ++l) {
+          if (block.twins && block.node[c][l] == block.node[(c + 1) % 4][l]) continue;  // counted there
+          const auto node = size_t(block.node[c][l]);
+          stiffness.translation[node] += bound[l];
+          stiffness.rotation[node] += turn[l];
+        }
+      }
+    }
+  }
+
+  // Inlined as a whole: lanes then stay in registers between the steps of the kernel.
+  DRAPEPLAN_FLATTEN void forces(State& state, Forces* entries) const override {
+    entries->force.fill(0);
+    entries->moment.fill(0);
+    const Rows<const double> x(state.x), d(state.d);
+    const Rows<double> force(entries->force), moment(entries->moment);
+    // The stiffest fibre that the stable step dt allows has a stress per strain of density (length / dt)^2,
+    // length = 2 half: stress = ratio times that, times the change of strain in a step, is the stated damping
+    // ratio.
+    const double viscous = 4 * viscous_mass_ / (state.stable_dt * state.stable_dt);
+    const double follow = kRates ? -std::expm1(-state.dt * lag_rate_) : 0;
+    const size_t stride = slot_stride();
+    for (size_t b = 0; b < blocks_.size(); ++b) {
+      const Block& block = blocks_[b];
+      const ElementGeometry<Lanes>& g = geometries_[block.geometry];
+      auto law = law_of(state, b, follow);
+      double* before = &state.history[b * size_t(kLanes)];
+      const Lanes added(block.rectangle ? 4 * viscous_borne_ / (state.stable_dt * state.stable_dt) : 0.0);
+      FibreViscosity<Lanes, A> viscosity{
+          {Lanes(viscous) * g.half1 * g.half1 + added, Lanes(viscous) * g.half2 * g.half2 + added}, {}};
+      for (size_t k = 0; k < kStrainSlots; ++k) viscosity.strain[k] = load(before + k * stride);
+      Corners<Lanes> f, m;
+      const Corners<Lanes> at = x.corners(block), along = d.corners(block);
+      if (block.rectangle) {
+        shell_forces<N, A, true>(g, material_, law, viscosity, at, along, f, m);
+      } else {
+        shell_forces<N, A, false>(g, material_, law, viscosity, at, along, f, m);
+      }
+      for (size_t k = 0; k < kStrainSlots; ++k) store(viscosity.strain[k], before + k * stride);
+      add_forces(block, f, m, force, moment);
+    }
+  }
+
+  [[nodiscard]] ShellEnergy stored_energy(const State& state) const override {
+    ShellEnergy sum;
+    for (size_t e = 0; e < mesh_.quads.size(); ++e) {
+      const ElementEnergy energy =
+          shell_energy<N, A>(geometry_[e], material_, corners(state.x, e), corners(state.d, e));
+      sum.fabric += energy.fabric;
+      sum.hourglass += energy.hourglass;
+    }
+    return sum;
+  }
+
+  void strains(const State& state, Snapshot& snapshot) const override {
+    const size_t count = mesh_.quads.size();
+    snapshot.shear.resize(count);
+    snapshot.warp_strain.resize(count);
+    snapshot.weft_strain.resize(count);
+    for (size_t e = 0; e < count; ++e) {
+      const auto m = element_motion(geometry_[e], corners(state.x, e), corners(state.d, e));
+      const double length1 = std::sqrt(dot(m.a1, m.a1)), length2 = std::sqrt(dot(m.a2, m.a2));
+      snapshot.shear[e] = std::asin(std::clamp(dot(m.a1, m.a2) / (length1 * length2), -1.0, 1.0));
+      snapshot.warp_strain[e] = length1 - 1;
+      snapshot.weft_strain[e] = length2 - 1;
+    }
+  }
+
+  void let_strains_grow(State& state, double by) const override {
+    if constexpr (kRates) {
+      for (size_t slot = 0; slot < kLawSlots; ++slot) {
+        const bool angle = slot < 3 * size_t(N) && slot % 3 == 2;
+        double* lagged = &state.history[(kStrainSlots + slot) * slot_stride()];
+        for (size_t e = 0; e < slot_stride(); ++e) lagged[e] += angle && lagged[e] > 0 ? -by : by;
+      }
+    }
+  }
+
+  [[nodiscard]] size_t history_count() const override {
+    return (kStrainSlots + (kRates ? kLawSlots : 0)) * slot_stride();
+  }
+
+ protected:
+  /// Adds what the elements of a block do to its nodes.
+  static void add_forces(const Block& block, Corners<Lanes>& f, Corners<Lanes>& m, const Rows<double>& force,
+                         const Rows<double>& moment) {
+    if (block.in_row) {
+      if (block.used < kLanes) clear_idle(block, f), clear_idle(block, m);
+      force.add_in_row(block, f);
+      moment.add_in_row(block, m);
+    } else {
+      force.add_anywhere(block, f);
+      moment.add_anywhere(block, m);
+    }
+  }
+
+  /// State::history has slots of one strain per element: mid-thickness strains of both fibres at the step
+  /// before, by point across; then, with rates, the lagged strains of the law's slots.
+  static constexpr size_t kStrainSlots = 2 * A;
+  static constexpr size_t kLawSlots = 3 * size_t(N) + 2 * size_t(A - 1);
+
+  size_t add_block(size_t first);
+
+  /// Idle lanes of a row's end work on nodes that do not belong together.
+  static void clear_idle(const Block& block, Lanes& value) {
+    const Lanes lane([](auto l) { return double(l); });
+    std::experimental::where(lane >= Lanes(double(block.used)), value) = Lanes(0.0);
+  }
+  static void clear_idle(const Block& block, Corners<Lanes>& values) {
+    for (Vec3<Lanes>& value : values) {
+      for (Lanes* part : {&value.x, &value.y, &value.z}) clear_idle(block, *part);
+    }
+  }
+
+  [[nodiscard]] CornerShares<Lanes> corner_shares(const Block& block,
+                                                  const std::vector<double>& lightness) const {
+    CornerShares<Lanes> shares;
+    for (size_t c = 0; c < 4; ++c) {
+      const auto& node = block.node[c];
+      const auto& next = block.node[(c + 1) % 4];
+      shares.lightness[c] = block.in_row ? load(&lightness[size_t(node[0])]) : pick(lightness.data(), node);
+      shares.twin[c] = block.twins
+                           ? Lanes([&](auto l) { return node[size_t(l)] == next[size_t(l)] ? 1.0 : 0.0; })
+                           : Lanes(0.0);
+    }
+    return shares;
+  }
+
+  /// Modulus that mass on edges bears, with a margin for what couples stretch to curvature [Pa].
+  [[nodiscard]] double borne_fibre() const { return (1 + kBorneMargin) * fibre_slope_; }
+
+  /// Takes away what mass on edges bears. It acts along the edges; fibres in between are at a small angle,
+  /// and the square of its sine is left.
+  void leave_unborne(const ElementGeometry<Lanes>& g, const MotionProducts<Lanes>& m,
+                     SectionStiffness<Lanes>& section) const {
+    const Lanes off1 = g.across1 * g.across1 * (m.hh - m.a1h * m.a1h / m.a11) / m.a11;
+    const Lanes off2 = g.across2 * g.across2 * (m.hh - m.a2h * m.a2h / m.a22) / m.a22;
+    section.fibre1 = unborne(section.fibre1, off1, Lanes(borne_stretch()));
+    section.fibre2 = unborne(section.fibre2, off2, Lanes(borne_stretch()));
+  }
+
+  /// In the rest shape, with one section for elements whose fibres added mass may bear and one for others.
+  void add_steepest(const SectionStiffness<double>& borne, const SectionStiffness<double>& others,
+                    NodalStiffness& stiffness) const {
+    const std::vector<char> can_be_borne = this->borne();
+    for (size_t e = 0; e < mesh_.quads.size(); ++e) {
+      const auto& section = can_be_borne[e] ? borne : others;
+      const auto& quad = mesh_.quads[e];
+      CornerShares<double> shares{{1, 1, 1, 1}, {0, 0, 0, 0}};
+      for (size_t c = 0; c < 4; ++c) shares.twin[c] = quad[c] == quad[(c + 1) % 4] ? 1 : 0;
+      const double bound = element_bound(geometry_[e], material_, section, shares);
+      const double gyration2 = gyration_squared(geometry_[e], material_.thickness);
+      for (size_t c = 0; c < 4; ++c) {
+        if (shares.twin[c] > 0) continue;  // counted at the next corner
+        stiffness.translation[size_t(quad[c])] += bound;
+        stiffness.rotation[size_t(quad[c])] += bound * gyration2;
+      }
+    }
+  }
+  [[nodiscard]] size_t slot_stride() const { return blocks_.size() * size_t(kLanes); }
+
+  auto slopes_of(const State& state, size_t block) const {
+    if constexpr (kRates) {
+      return RateSlopes(tables_, &state.history[kStrainSlots * slot_stride() + block * size_t(kLanes)],
+                        slot_stride());
+    } else {
+      return StaticLaw(material_);
+    }
+  }
+  auto law_of(State& state, size_t block, double follow) const {
+    if constexpr (kRates) {
+      return RateLaw(tables_, &state.history[kStrainSlots * slot_stride() + block * size_t(kLanes)],
+                     slot_stride(), follow);
+    } else {
+      return StaticLaw(material_);
+    }
+  }
+
+  [[nodiscard]] Corners<double> corners(const VectorField& field, size_t element) const {
+    Corners<double> out;
+    for (size_t c = 0; c < 4; ++c) {
+      const auto node = size_t(mesh_.quads[element][c]);
+      out[c] = {field.x[node], field.y[node], field.z[node]};
+    }
+    return out;
+  }
+
+  Mesh mesh_;
+  KernelMaterial material_;
+  double fibre_slope_, slow_shear_slope_, shear_slope_;  ///< steepest, instantaneous ones with rates [Pa]
+  double
+      viscous_mass_;  ///< damping ratio times scaled mass per area, over the middle point's weight [kg/m^3]
+  bool selective_;
+  double bulk_viscosity_;
+  double viscous_borne_ = 0;  ///< the same of mass on edges, per volume and squared element length [Pa s^2]
+  double lag_rate_ = 0;       ///< of lagged strains, in the simulation's time [1/s]
+  std::conditional_t<kRates, RateTables, NoTables> tables_;
+  std::vector<ElementGeometry<double>> geometry_;
+  std::vector<Block> blocks_;
+  std::vector<ElementGeometry<Lanes>> geometries_;
+};
+
+/// Appends the block that starts at element `first`; a block ends where the run of consecutive nodes ends.
+template <int N, int A, bool kRates>
+size_t ShellTerm<N, A, kRates>::add_block(size_t first) {
+  size_t used = std::min(mesh_.quads.size() - first, size_t(kLanes)), run = 1;
+  const auto& start = mesh_.quads[first];
+  const auto continues = [&](size_t l) {
+    for (size_t c = 0; c < 4; ++c) {
+      if (mesh_.quads[first + l][c] != start[c] + int(l)) return false;
+    }
+    return true;
+  };
+  while (run < used && continues(run)) ++run;
+  Block block;
+  // The end of a row leaves some lanes idle; only a short run takes what follows along, gathered.
+  block.in_row = run >= size_t(kLanes) / 2 && start[1] == start[0] + 1 && start[2] == start[3] + 1;
+  if (block.in_row) used = run;
+  block.used = int(used);
+  ElementGeometry<Lanes> geometry;
+  for (size_t l = 0; l < size_t(kLanes); ++l) {
+    const size_t element = first + std::min(l, used - 1);
+    for (size_t c = 0; c < 4; ++c) {
+      const auto& quad = mesh_.quads[element];
+      block.node[c][l] = quad[c];
+      block.twins = block.twins || quad[c] == quad[(c + 1) % 4];
+    }
+    ElementGeometry<double> one = geometry_[element];
+    if (l >= used) one.area = 0;
+    for (size_t k = 0; k < one.parts().size(); ++k) (*geometry.parts()[k])[l] = *one.parts()[k];
+  }
+  block.rectangle = geometry.rectangle();
+  const auto same = [&geometry](ElementGeometry<Lanes>& other) {
+    for (size_t k = 0; k < geometry.parts().size(); ++k) {
+      if (std::experimental::any_of(*geometry.parts()[k] != *other.parts()[k])) return false;
+    }
+    return true;
+  };
+  const auto known = std::find_if(geometries_.begin(), geometries_.end(), same);
+  block.geometry = size_t(known - geometries_.begin());
+  if (known == geometries_.end()) geometries_.push_back(geometry);
+  blocks_.push_back(block);
+  return used;
+}
+
+/// Builds the term for a number of section points; instantiated in files of their own, since each takes long
+/// to compile.
+template <int N>
+std::unique_ptr<Shell> make_shell_of(const Mesh& mesh, const Fabric& fabric, const FemOptions& options) {
+  const auto with_rates = [&]<int A>(std::integral_constant<int, A>) -> std::unique_ptr<Shell> {
+    if (options.rates && fabric.rate_dependent())
+      return std::make_unique<ShellTerm<N, A, true>>(mesh, fabric, options);
+    return std::make_unique<ShellTerm<N, A, false>>(mesh, fabric, options);
+  };
+  return options.fibre_points == 1 ? with_rates(std::integral_constant<int, 1>())
+                                   : with_rates(std::integral_constant<int, 2>());
+}
+
+extern template std::unique_ptr<Shell> make_shell_of<1>(const Mesh&, const Fabric&, const FemOptions&);
+extern template std::unique_ptr<Shell> make_shell_of<3>(const Mesh&, const Fabric&, const FemOptions&);
+extern template std::unique_ptr<Shell> make_shell_of<5>(const Mesh&, const Fabric&, const FemOptions&);
+
+}  // namespace drapeplan

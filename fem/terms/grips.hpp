@@ -1,0 +1,22 @@
+// Grips: rigid clamps that hold nodes of the ply and move them, as the jaws of a test machine do.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace drapeplan {
+
+/// Positions and directors of the nodes are held; the whole clamp translates.
+struct Grip {
+  std::string name;
+  std::vector<int> nodes;
+  Eigen::Vector3d velocity{0, 0,
+                           0};  ///< reached at the end of the ramp, world frame [m/s] of the schedule's clock
+  double ramp = 0.1;            ///< from rest to `velocity`, with continuous acceleration at both ends [s]
+};
+
+/// Displacement since the start at time `t` of the schedule's clock [m].
+Eigen::Vector3d grip_displacement(const Grip& grip, double t);
+
+}  // namespace drapeplan

@@ -1,0 +1,116 @@
+// A case: everything that one JSON file says, with defaults filled in. SI units and radians inside.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fem/core/options.hpp"
+#include "fem/core/start.hpp"
+#include "fem/law/fabric.hpp"
+#include "fem/rig/rig.hpp"
+#include "mapping/mold.hpp"
+#include "mapping/net.hpp"
+#include "planner/case/score_options.hpp"
+
+namespace drapeplan {
+
+/// Where the commanded heights of a schedule end.
+enum class Aim {
+  mapped,     ///< joints above the mapped targets (the seed)
+  reachable,  ///< joints above the places that the rig can reach (see planner/reach/reach.hpp)
+};
+
+/// From when the delay of a wave counts.
+enum class DelayFrom {
+  start,  ///< from the start of the group before (5.1 s for the seed's wave)
+  end,    ///< from the end of the group before (12.1 s for the seed's wave)
+};
+
+/// The two baseline strategies and what they share.
+struct ScheduleOptions {
+  Aim aim = Aim::mapped;
+  double preshape_height = 0.030;  ///< height of all grippers above their targets after the preshape [m]
+  double preshape_duration = 5;    ///< [s]
+  double overtravel = 0.002;    ///< commanded depth below the target, so that actuators press pads down [m]
+  double settle = 1;            ///< time at rest at the end [s]
+  double uniform_duration = 5;  ///< [s]
+  double wave_duration = 3.5;   ///< stroke of one group [s]
+  double wave_delay = 0.8;      ///< [s]
+  DelayFrom wave_delay_from = DelayFrom::start;
+  Eigen::Vector2d wave_start{0, 0};  ///< in the ply frame (u, v) [m]
+};
+
+struct OptimiseOptions {
+  int wave_evaluations = 120;     ///< budget of the wave family's search
+  int gripper_evaluations = 240;  ///< budget of the per-gripper search
+  int finalists = 4;              ///< best schedules that are evaluated at the reporting fidelity
+  double shortest_stroke = 1.0;   ///< of a gripper after the preshape [s]
+  double longest_sequence = 15;   ///< after the preshape [s]
+  unsigned seed = 1;
+};
+
+/// Edge of the ply that is clamped (strips, test specimens).
+enum class Edge { left, right, bottom, top };  ///< smallest u, largest u, smallest v, largest v
+
+/// A clamp on a straight piece of the ply's outline.
+struct GripOptions {
+  std::string name;
+  Eigen::Vector2d from{0, 0}, to{0, 0};  ///< ends of the piece (u, v) [m]
+  Eigen::Vector3d velocity{0, 0, 0};     ///< world frame [m/s]
+  double ramp = 0.1;                     ///< from rest to the velocity [s]
+};
+
+/// By how much a grip's ends, which are rounded in files, may miss the outline [m].
+inline constexpr double kOnOutline = 1e-5;
+
+/// A named point of the ply whose displacement is reported.
+struct Probe {
+  std::string name;
+  Eigen::Vector2d place{0, 0};  ///< (u, v) [m]
+};
+
+/// A published result, shown beside the own ones.
+struct Reference {
+  std::string name;
+  double max_separation = 0;       ///< [m]
+  double max_boundary_offset = 0;  ///< [m]
+};
+
+/// Where the figures of the material come from, in words; all may be empty.
+struct MaterialNotes {
+  std::string name, source;
+  std::string tension_source, compression_source, shear_source;
+};
+
+/// Sections that are absent in the file are absent here, and so is their physics.
+struct Case {
+  std::string name;
+  std::string description;
+  Ply ply;
+  Fabric material;  ///< thickness 0: no `material` section, nothing can be simulated
+  MaterialNotes material_notes;
+  Start start = Start::level;  ///< of a ply without grippers
+  double start_height = 0;     ///< height of the level ply without grippers [m]
+  std::optional<Mold> mold;
+  std::optional<double> friction;  ///< Coulomb coefficient between ply and mold
+  std::optional<MappingOptions> mapping;
+  std::optional<RigOptions> grippers;
+  std::string grippers_source;    ///< where their figures come from, in words
+  std::optional<double> gravity;  ///< [m/s^2]
+  std::optional<double> damping;  ///< mass-proportional rate alpha of the unscaled ply [1/s]
+  std::optional<RestCriterion> rest;
+  std::vector<Edge> clamped;
+  std::vector<GripOptions> grips;
+  std::vector<Probe> probes;
+  std::vector<Reference> references;
+  double duration = 0;  ///< of a run without grippers [s]
+  ScheduleOptions schedule;
+  ScoreOptions score;
+  OptimiseOptions optimise;
+  std::map<std::string, FemOptions>
+      fidelities;  ///< at least "report"; every one starts from the `fem` section
+};
+
+}  // namespace drapeplan

@@ -1,0 +1,266 @@
+#include "planner/case/checks.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <set>
+
+#include "planner/base/json_text.hpp"
+
+namespace drapeplan {
+namespace {
+
+constexpr double kSlack = 1e-9;     // [m] or cells, so that what fits exactly fits
+constexpr double kMostCells = 4e6;  // of a net or mesh; far above use, below what fills the memory
+
+bool on_ply(const Ply& ply, const Eigen::Vector2d& place) {
+  return contains(corners_of(ply), place, kSlack);
+}
+
+std::string place_text(const Eigen::Vector2d& place) {
+  return "(" + format_quantity(place.x(), Dimension::length) + ", " +
+         format_quantity(place.y(), Dimension::length) + ")";
+}
+
+std::string ply_text(const Ply& ply) {
+  const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
+  const std::string reach = " reaches from " + place_text(box.min()) + " to " + place_text(box.max());
+  return ply.outline.empty() ? "the ply" + reach : "the ply's outline" + reach;
+}
+
+/// Without an outline a ply is a rectangle, whose size must be stated.
+void check_ply(const CaseFields& fields, FieldReader& reader) {
+  const Polygon& outline = fields.value.ply.outline;
+  const bool stated_well = reader.good("/ply");
+  for (const auto& [name, size] : {std::pair{"width", fields.width}, {"height", fields.height}}) {
+    if (!outline.empty() && size)
+      reader.fail(std::string("/ply/") + name,
+                  "belongs to a ply without an outline; the outline says the size");
+    if (outline.empty() && !size && stated_well)
+      reader.fail("/ply", std::string("\"") + name +
+                              "\" is missing; a ply has either width and height or an outline");
+  }
+  if (outline.empty() || !reader.good("/ply/outline")) return;
+  if (const auto edges = crossing_edges(outline)) {
+    const auto edge = [](size_t k) { return "the edge from point " + std::to_string(k + 1); };
+    const auto [i, j] = *edges;
+    reader.fail("/ply/outline",
+                i == j ? edge(i) + " has no length"
+                       : "the outline crosses or touches itself: " + edge(i) + " meets " + edge(j));
+  }
+}
+
+void check_on_ply(FieldReader& reader, const std::string& pointer, const Ply& ply,
+                  const Eigen::Vector2d& place) {
+  if (reader.good(pointer) && !on_ply(ply, place))
+    reader.fail(pointer, "lies outside the ply; " + ply_text(ply));
+}
+
+void check_cells(FieldReader& reader, const std::string& pointer, const Ply& ply, double size) {
+  const double cells = std::ceil(ply.width / size - kSlack) * std::ceil(ply.height / size - kSlack);
+  if (reader.good(pointer) && !(cells <= kMostCells)) {
+    reader.fail(pointer, "would make " + std::to_string(std::int64_t(cells)) +
+                             " cells of this ply; allowed: " + std::to_string(std::int64_t(kMostCells)));
+  }
+}
+
+void check_mapping(const CaseFields& fields, FieldReader& reader) {
+  const auto& mapping = fields.value.mapping;
+  if (!mapping || !reader.good("/mapping")) return;
+  check_cells(reader, reader.good("/mapping/cell_size") ? "/mapping/cell_size" : "/mapping", fields.value.ply,
+              mapping->cell_size);
+  const bool start_stated = reader.good("/mapping/ply_start");
+  if (!on_ply(fields.value.ply, mapping->ply_start)) {
+    reader.fail(start_stated ? "/mapping/ply_start" : "/mapping",
+                std::string(start_stated ? "lies" : "its ply_start, the ply's origin, lies") +
+                    " outside the ply; " + ply_text(fields.value.ply));
+  }
+  if (!fields.mold || !reader.good("/mold")) return;
+  const Extent& extent = fields.mold->extent;
+  const bool inside = (mapping->start.array() >= extent.lower.array()).all() &&
+                      (mapping->start.array() <= extent.upper.array()).all();
+  if (inside) return;
+  const bool stated = reader.good("/mapping/start");
+  reader.fail(stated ? "/mapping/start" : "/ply",
+              std::string(stated ? "lies" : "its position, where the mapping starts, lies") +
+                  " outside the mold's extent");
+}
+
+void check_rotation_limits(const RigOptions& rig, FieldReader& reader) {
+  if (!rig.rotation_limits || !reader.good("/grippers/rotation_limits")) return;
+  const auto check = [&reader](const std::string& name, const Eigen::Vector2d& range) {
+    const std::string pointer = "/grippers/rotation_limits/" + name;
+    if (reader.good(pointer) && !(range[0] <= 0 && range[1] >= 0))
+      reader.fail(pointer, "excludes the flat start; allowed: least <= 0 deg <= largest");
+  };
+  check("about_warp", rig.rotation_limits->about_warp);
+  check("about_weft", rig.rotation_limits->about_weft);
+}
+
+void check_grippers(const CaseFields& fields, FieldReader& reader) {
+  if (!fields.value.grippers || !reader.good("/grippers")) return;
+  const RigOptions& rig = *fields.value.grippers;
+  for (int g = rig.count() - 1; g >= 0 && reader.good("/ply"); --g) {
+    if (on_ply(fields.value.ply, rig.place(g))) continue;
+    reader.fail("/grippers/spacing", "gripper [" + std::to_string(g % rig.columns + 1) + ", " +
+                                         std::to_string(g / rig.columns + 1) +
+                                         "] is off the ply: its pad's centre lies at " +
+                                         place_text(rig.place(g)) + "; " + ply_text(fields.value.ply));
+    break;
+  }
+  if (rig.count() > 1 && rig.spacing < 2 * rig.pad_radius) {
+    reader.fail("/grippers/spacing", "the pads overlap; allowed: at least twice pad_radius, " +
+                                         format_quantity(2 * rig.pad_radius, Dimension::length));
+  }
+  check_rotation_limits(rig, reader);
+  if (rig.driven == Driven::xyz) {
+    if (rig.interlinks)
+      reader.fail("/grippers/driven",
+                  "joints that are driven in x and y cannot have interlinks: set "
+                  "\"interlinks\": false, or \"driven\": \"z\"");
+    if (rig.fixed)
+      reader.fail("/grippers/driven",
+                  "joints that are driven in x and y cannot be fixed: leave out \"fixed\", "
+                  "or set \"driven\": \"z\"");
+  }
+  if (!rig.fixed) return;
+  const auto [i, j] = *rig.fixed;
+  if (i < 1 || i > rig.columns || j < 1 || j > rig.rows) {
+    reader.fail("/grippers/fixed", "there is no such gripper; allowed: [1, 1] to [" +
+                                       std::to_string(rig.columns) + ", " + std::to_string(rig.rows) + "]");
+  }
+}
+
+/// Both ends and the middle of a gripped piece lie on the outline, so all of it does, but for a notch
+/// between.
+void check_grips(const CaseFields& fields, FieldReader& reader) {
+  std::set<std::string> names;
+  for (size_t k = 0; k < fields.value.grips.size(); ++k) {
+    const GripOptions& grip = fields.value.grips[k];
+    const std::string pointer = "/grips/" + std::to_string(k);
+    if (reader.good(pointer + "/name") && !names.insert(grip.name).second)
+      reader.fail(pointer + "/name", "another grip has the same name");
+    if (!reader.good("/ply") || !reader.good(pointer + "/from") || !reader.good(pointer + "/to")) continue;
+    if ((grip.to - grip.from).norm() <= kOnOutline) reader.fail(pointer, "its ends coincide");
+    const Polygon outline = corners_of(fields.value.ply);
+    const auto off = [&outline](const Eigen::Vector2d& place) {
+      return (nearest_on_edges(outline, place) - place).norm() > kOnOutline;
+    };
+    if (off(grip.from)) reader.fail(pointer + "/from", "lies off the ply's outline");
+    if (off(grip.to)) reader.fail(pointer + "/to", "lies off the ply's outline");
+    if (!off(grip.from) && !off(grip.to) && off(0.5 * (grip.from + grip.to)))
+      reader.fail(pointer, "is no straight piece of the ply's outline");
+  }
+}
+
+void check_probes(const CaseFields& fields, FieldReader& reader) {
+  std::set<std::string> names;
+  for (const GripOptions& grip : fields.value.grips) names.insert(grip.name);
+  for (size_t k = 0; k < fields.value.probes.size(); ++k) {
+    const Probe& probe = fields.value.probes[k];
+    const std::string pointer = "/probes/" + std::to_string(k);
+    if (reader.good(pointer + "/name") && !names.insert(probe.name).second) {
+      reader.fail(pointer + "/name", "another probe or grip has the same name");
+    }
+    if (reader.good("/ply")) check_on_ply(reader, pointer + "/place", fields.value.ply, probe.place);
+  }
+}
+
+/// Faster rates are resisted more: what is weaker the faster it goes would feed every vibration.
+void check_rates(FieldReader& reader, const std::string& mode, const CurveFields& fields) {
+  const std::string pointer = "/material/" + mode + "/rates";
+  if (fields.rates.empty() || !reader.good("/material/" + mode)) return;
+  const StressTable table = stress_table(fields);
+  for (size_t k = 1; k < fields.rates.size(); ++k) {
+    const std::string place = pointer + "/" + std::to_string(k);
+    if (!(table.rates[k] > table.rates[k - 1])) {
+      reader.fail(place + "/rate", "rates must increase");
+      continue;
+    }
+    std::vector<double> strains = table.curves[k].strain;
+    strains.insert(strains.end(), table.curves[k - 1].strain.begin(), table.curves[k - 1].strain.end());
+    constexpr double kSlackShare = 1e-9;  // round-off of factors
+    for (const double strain : strains) {
+      const double slow = table.curves[k - 1](strain), fast = table.curves[k](strain);
+      if (fast >= slow * (1 - kSlackShare)) continue;
+      reader.fail(place,
+                  "at strain " + std::to_string(strain) + " its stress is below that of the slower rate");
+      break;
+    }
+  }
+}
+
+/// A ply that is mapped is measured there, with a warning; one that is only laid down must lie on the mold.
+void check_on_mold(const CaseFields& fields, FieldReader& reader) {
+  const Case& c = fields.value;
+  if (!fields.mold || !fields.material || c.mapping || !reader.good("/mold/extent")) return;
+  const Extent& extent = fields.mold->extent;
+  double beyond = 0;
+  for (const Eigen::Vector2d& corner : corners_of(c.ply)) {
+    const Eigen::Vector2d xy = c.ply.position + Eigen::Rotation2Dd(c.ply.angle) * corner;
+    beyond = std::max({beyond, (extent.lower - xy).maxCoeff(), (xy - extent.upper).maxCoeff()});
+  }
+  if (beyond > kSlack)
+    reader.fail("/mold/extent", "the flat ply reaches " + format_quantity(beyond, Dimension::length) +
+                                    " beyond it: there is no mold under its edge");
+}
+
+/// Curves are sampled over all that they reach: what no fibre and no fabric can do is a wrong unit.
+void check_reach(FieldReader& reader, const std::string& mode, const CurveFields& fields) {
+  const bool angle = mode == "shear";
+  const double most = angle ? 0.5 * std::numbers::pi : 1.0;
+  const auto check = [&](const std::string& pointer, const Curve& curve) {
+    if (!reader.good(pointer) || curve.strain.empty() || curve.strain.back() <= most) return;
+    reader.fail(pointer, angle ? "reaches beyond a shear of 90 deg" : "reaches beyond a strain of 100 %");
+  };
+  const std::string pointer = "/material/" + mode;
+  check(pointer + "/points", fields.curve);
+  for (size_t k = 0; k < fields.rates.size(); ++k)
+    check(pointer + "/rates/" + std::to_string(k) + "/points", fields.rates[k].curve);
+}
+
+void check_material(const CaseFields& fields, FieldReader& reader) {
+  if (!fields.material) return;
+  const MaterialFields& material = *fields.material;
+  if (material.law == 0) {
+    check_reach(reader, "tension", material.tension);
+    check_reach(reader, "compression", material.compression);
+    check_reach(reader, "shear", material.shear);
+    check_rates(reader, "tension", material.tension);
+    check_rates(reader, "compression", material.compression);
+    check_rates(reader, "shear", material.shear);
+    if (fields.damping && fields.damping->by == 1 && !fields.damping->modulus && reader.good("/damping"))
+      reader.fail("/damping",
+                  "\"modulus\" is missing (the law is not linear, so it cannot be taken from it)");
+  }
+}
+
+}  // namespace
+
+void check_case(const CaseFields& fields, FieldReader& reader) {
+  const Case& c = fields.value;
+  check_ply(fields, reader);
+  check_material(fields, reader);
+  check_grippers(fields, reader);
+  check_grips(fields, reader);
+  check_probes(fields, reader);
+  if (reader.good("/optimise") && c.optimise.longest_sequence < c.optimise.shortest_stroke) {
+    reader.fail("/optimise", "longest_sequence is shorter than shortest_stroke");
+  }
+  if (!reader.good("/ply")) return;
+  if (c.start == Start::on_mold && reader.good("/ply/start") && (!fields.mold || c.grippers)) {
+    reader.fail("/ply/start",
+                "needs a mold and no grippers; with grippers the schedule says where the ply starts");
+  }
+  check_mapping(fields, reader);
+  check_on_mold(fields, reader);
+  check_on_ply(reader, "/schedule/wave/start", c.ply, c.schedule.wave_start);
+  if (reader.good("/fem")) check_cells(reader, "/fem/mesh_size", c.ply, fields.fem.mesh_size);
+  for (const auto& [name, options] : c.fidelities) {
+    check_cells(reader, "/fidelities" + pointer_token(name) + "/mesh_size", c.ply, options.mesh_size);
+  }
+}
+
+}  // namespace drapeplan

@@ -1,0 +1,171 @@
+// Between a case as its file states it and a case as the rest of the program uses it.
+#include <cmath>
+
+#include "planner/case/fields.hpp"
+
+namespace drapeplan {
+namespace {
+
+Curve straight(double modulus) {
+  return {{0, 1}, {0, modulus}};
+}
+
+bool is_straight(const StressTable& table) {
+  if (table.curves.size() != 1) return false;
+  const Curve& curve = table.slowest();
+  return curve.strain == std::vector<double>{0, 1} && curve.stress.size() == 2;
+}
+
+Curve scaled(const Curve& points, double factor) {
+  Curve curve = points;
+  for (double& stress : curve.stress) stress *= factor;
+  return curve;
+}
+
+/// A table as fields: every rate with its own points.
+CurveFields curve_fields(const StressTable& table, const std::string& source) {
+  CurveFields fields{table.curves.empty() ? Curve() : table.slowest(), 1, source, {}};
+  for (size_t k = 0; k < table.rates.size(); ++k)
+    fields.rates.push_back({table.rates[k], 1, table.curves[k]});
+  return fields;
+}
+
+/// Rate alpha of mass damping [1/s]. Seed, Eqs. (4) and (5), per width: the lowest frequency of a strip.
+double alpha_of(const DampingFields& d, const std::optional<MaterialFields>& material) {
+  if (d.by == 0 || !material) return d.alpha;
+  constexpr double kFirstRoot = 1.8751040687119611;  // of cos x cosh x = -1: clamped-free beam
+  const double modulus = d.modulus.value_or(material->modulus);
+  const double stiffness = modulus * std::pow(material->thickness, 3) / 12;
+  const double frequency =
+      kFirstRoot * kFirstRoot * std::sqrt(stiffness / (material->areal_density * std::pow(d.length, 4)));
+  return 2 * d.ratio * frequency;
+}
+
+Fabric fabric_of(const MaterialFields& m) {
+  const bool linear = m.law == 1;
+  Fabric fabric;
+  fabric.thickness = m.thickness;
+  fabric.areal_density = m.areal_density;
+  fabric.transverse_shear_modulus = m.transverse_shear_modulus;
+  fabric.tension = linear ? straight(m.modulus) : stress_table(m.tension);
+  fabric.compression = linear ? straight(m.modulus) : stress_table(m.compression);
+  fabric.shear = linear ? straight(m.shear_modulus) : stress_table(m.shear);
+  fabric.shear_measure = ShearMeasure(m.shear_measure);
+  fabric.rate_floor = m.rate_floor;
+  fabric.rate_filter = m.rate_filter;
+  return fabric;
+}
+
+/// Tables that are straight lines through strain 1 are stated as the linear law, so that moduli keep their
+/// names.
+MaterialFields material_fields(const Fabric& fabric, const MaterialNotes& notes) {
+  MaterialFields m;
+  m.name = notes.name;
+  m.source = notes.source;
+  m.thickness = fabric.thickness;
+  m.areal_density = fabric.areal_density;
+  m.transverse_shear_modulus = fabric.transverse_shear_modulus;
+  const bool same = is_straight(fabric.tension) && is_straight(fabric.compression) &&
+                    fabric.tension.slowest().stress == fabric.compression.slowest().stress &&
+                    fabric.shear_measure == ShearMeasure::conjugate;
+  const bool no_sources = (notes.tension_source + notes.compression_source + notes.shear_source).empty();
+  if (same && is_straight(fabric.shear) && no_sources) {
+    m.law = 1;
+    m.modulus = fabric.tension.slowest().stress[1];
+    m.shear_modulus = fabric.shear.slowest().stress[1];
+  } else {
+    m.tension = curve_fields(fabric.tension, notes.tension_source);
+    m.compression = curve_fields(fabric.compression, notes.compression_source);
+    m.shear = curve_fields(fabric.shear, notes.shear_source);
+    m.shear_measure = int(fabric.shear_measure);
+    m.rate_floor = fabric.rate_floor;
+    m.rate_filter = fabric.rate_filter;
+  }
+  return m;
+}
+
+Mold::Shape shape_of(const MoldFields& m) {
+  switch (m.shape) {
+    case 0:
+      return PlaneShape{m.angle};
+    case 2:
+      return SphereShape{m.centre, m.radius};
+    case 3:
+      return CylinderShape{m.centre, m.azimuth, m.radius};
+    default:
+      break;
+  }
+  PolynomialShape shape{m.terms};
+  for (PolynomialShape::Term& term : shape.terms) term.coefficient *= std::pow(m.unit, 1 - term.i - term.j);
+  return shape;
+}
+
+MoldFields mold_fields(const Mold& mold) {
+  MoldFields m;
+  m.shape = int(mold.shape().index());
+  m.extent = mold.extent();
+  if (const auto* plane = std::get_if<PlaneShape>(&mold.shape())) m.angle = plane->angle;
+  if (const auto* polynomial = std::get_if<PolynomialShape>(&mold.shape())) m.terms = polynomial->terms;
+  if (const auto* sphere = std::get_if<SphereShape>(&mold.shape())) {
+    m.centre = sphere->centre;
+    m.radius = sphere->radius;
+  }
+  if (const auto* cylinder = std::get_if<CylinderShape>(&mold.shape())) {
+    m.centre = cylinder->centre;
+    m.azimuth = cylinder->azimuth;
+    m.radius = cylinder->radius;
+  }
+  return m;
+}
+
+}  // namespace
+
+void complete_ply(CaseFields& fields) {
+  Ply& ply = fields.value.ply;
+  const Eigen::Vector2d size = bounding_box(ply.outline).sizes();
+  ply.width = ply.outline.empty() ? fields.width.value_or(0) : size.x();
+  ply.height = ply.outline.empty() ? fields.height.value_or(0) : size.y();
+}
+
+StressTable stress_table(const CurveFields& fields) {
+  if (fields.rates.empty()) return scaled(fields.curve, fields.factor);
+  StressTable table;
+  for (const RateFields& rate : fields.rates) {
+    table.rates.push_back(rate.rate);
+    table.curves.push_back(
+        scaled(rate.curve.strain.empty() ? fields.curve : rate.curve, rate.factor * fields.factor));
+  }
+  if (table.rates.size() == 1) table.rates.clear();
+  return table;
+}
+
+void complete_case(CaseFields& fields) {
+  Case& c = fields.value;
+  if (const auto& m = fields.material) {
+    c.material = fabric_of(*m);
+    c.material_notes = {m->name, m->source, m->tension.source, m->compression.source, m->shear.source};
+  }
+  if (fields.damping) c.damping = alpha_of(*fields.damping, fields.material);
+  if (fields.mold) c.mold.emplace(shape_of(*fields.mold), fields.mold->extent);
+  c.fidelities.try_emplace("report", fields.fem);
+}
+
+CaseFields fields_of(const Case& value) {
+  CaseFields fields;
+  fields.value = value;
+  if (value.ply.outline.empty()) {
+    fields.width = value.ply.width;
+    fields.height = value.ply.height;
+  }
+  if (value.material.thickness > 0) fields.material = material_fields(value.material, value.material_notes);
+  if (value.mold) fields.mold = mold_fields(*value.mold);
+  if (value.damping) fields.damping.emplace().alpha = *value.damping;
+  const auto report = fields.value.fidelities.find("report");
+  if (report != fields.value.fidelities.end()) {
+    fields.fem = report->second;
+    fields.value.fidelities.erase(report);  // it is `fem` itself
+  }
+  return fields;
+}
+
+}  // namespace drapeplan

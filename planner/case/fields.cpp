@@ -1,0 +1,338 @@
+#include "planner/case/fields.hpp"
+
+#include <cmath>
+
+#include "planner/case/material_fields.hpp"
+#include "planner/input/kit.hpp"
+
+namespace drapeplan {
+namespace {
+
+void visit_ply(FieldVisitor& v, CaseFields& fields) {
+  Ply& ply = fields.value.ply;
+  Start& start = fields.value.start;
+  v.field({"width", &fields.width, "Size along the warp (u); the origin of (u, v) is in the middle",
+           Dimension::length, positive(kLargestLength), false, "needed without `outline`"});
+  v.field({"height", &fields.height, "Size along the weft (v)", Dimension::length, positive(kLargestLength),
+           false, "needed without `outline`"});
+  v.field(
+      {"outline", &ply.outline,
+       "Corners (u, v) of a ply that is no upright rectangle, in order, either way round; instead of `width` "
+       "and `height`",
+       Dimension::length, from(-kLargestLength, kLargestLength), false, "absent: a rectangle"});
+  v.field(
+      {"position", &ply.position, "Place (x, y) of the origin of (u, v) before draping", Dimension::length});
+  v.field({"angle", &ply.angle, "Warp direction, from +x towards +y", Dimension::angle});
+  v.field({"start", choice(start, {"level", "on_mold"}),
+           "Without grippers: `level` at start_height, or laid `on_mold`, flat in its tangent plane at "
+           "`position`"});
+}
+
+void visit_grip(FieldVisitor& v, GripOptions& grip) {
+  v.field({"name", &grip.name, "Name in the results, among those of the probes", Dimension::none, {}, true});
+  v.field({"from",
+           &grip.from,
+           "One end of the piece (u, v), on the outline to 10 um",
+           Dimension::length,
+           {},
+           true});
+  v.field({"to", &grip.to, "Its other end, on the same edge", Dimension::length, {}, true});
+  v.field(
+      {"velocity", &grip.velocity, "Of the clamp (x, y, z), reached after the ramp", Dimension::velocity});
+  v.field({"ramp", &grip.ramp, "Time from rest to the velocity, with continuous acceleration",
+           Dimension::time, positive(1e5)});
+}
+
+void visit_mapping(FieldVisitor& v, MappingOptions& m) {
+  v.field(
+      {"generators", choice(m.generators, {"perpendicular", "axes", "mid_sides"}),
+       "Fibre lines through the start point: geodesics at right angles; along the projected warp and weft; "
+       "towards the mid-sides of the mold"});
+  Field start{"start", &m.start, "Point (x, y) of the mold where the mapping starts", Dimension::length};
+  start.default_words = "ply.position";
+  v.field(start);
+  v.field({"ply_start", &m.ply_start, "Point (u, v) of the ply that is placed there", Dimension::length});
+  v.field({"cell_size", &m.cell_size, "Largest edge of a net cell", Dimension::length, from(1e-4, 1)});
+}
+
+void visit_grippers(FieldVisitor& v, RigOptions& g) {
+  v.field({"columns", &g.columns, "Grippers along the warp", Dimension::none, from(1, 100), true});
+  v.field({"rows", &g.rows, "Grippers along the weft", Dimension::none, from(1, 100), true});
+  v.field({"spacing", &g.spacing, "Between neighbouring joints; the grid is centred on the ply",
+           Dimension::length, positive(kLargestLength), true});
+  v.field(
+      {"pad_radius", &g.pad_radius, "Rigid disc that is tied to the ply", Dimension::length, positive(1)});
+  v.field({"pad_mass", &g.pad_mass, "Moving mass of one gripper", Dimension::mass, positive(1e3)});
+  v.field({"joint_offset", &g.joint_offset, "Height of the joint above the ply, along the pad's normal",
+           Dimension::length, from(0, 1)});
+  v.field({"tilt_limit",
+           &g.tilt_limit,
+           "Largest angle between the pad's normal and the vertical",
+           Dimension::angle,
+           {0, kRightAngle, true, true}});
+  const Range turn{-kRightAngle, kRightAngle};
+  optional_section(
+      v,
+      {"rotation_limits",
+       "Least and largest rotation of a pad about the in-plane axes of the ply in the flat start; both hold "
+       "0"},
+      g.rotation_limits, RotationLimits(), [&](RotationLimits& limits) {
+        v.field({"about_warp", &limits.about_warp,
+                 "[least, largest]; > 0: the pad's normal leans towards -v. atan2(-n_v, n_z) of the normal n",
+                 Dimension::angle, turn});
+        v.field({"about_weft", &limits.about_weft,
+                 "[least, largest]; > 0: the pad's normal leans towards +u. atan2(n_u, n_z) of the normal n",
+                 Dimension::angle, turn});
+      });
+  v.field({"driven", choice(g.driven, {"z", "xyz"}),
+           "Directions in which actuators drive the joints; `xyz` without interlinks and fixed joint"});
+  v.field({"interlinks", &g.interlinks, "Rigid bars between neighbouring joints"});
+  v.field(
+      {"fixed", &g.fixed, "Gripper [i, j] whose joint is fixed in-plane; i counts along the warp, from 1"});
+  v.field({"actuator_stiffness", &g.actuator_stiffness,
+           "Between the commanded and the true place of a joint, in each driven direction",
+           Dimension::line_stiffness, positive()});
+  v.field({"actuator_force_limit", &g.actuator_force_limit,
+           "Largest force of an actuator, in each driven direction", Dimension::force, positive()});
+  v.field({"max_velocity", &g.max_velocity, "Largest velocity of a joint, vertical or in-plane",
+           Dimension::velocity, positive()});
+  v.field({"blend_time", &g.blend_time, "Time over which a change of velocity is spread", Dimension::time,
+           from(0)});
+  v.field({"release_time", &g.release_time,
+           "From the end of the last stroke until the suction of all grippers ends", Dimension::time, from(0),
+           false, "absent: the ply is held to the end"});
+}
+
+void visit_schedule(FieldVisitor& v, ScheduleOptions& s) {
+  v.field({"aim", choice(s.aim, {"mapped", "reachable"}),
+           "Commanded heights end above the mapped targets, or above the places that the rig can reach"});
+  v.field({"preshape_height", &s.preshape_height, "Of all grippers above their targets after the preshape",
+           Dimension::length, from(0, kLargestLength)});
+  v.field({"preshape_duration", &s.preshape_duration, "Time of the preshape", Dimension::time, positive()});
+  v.field({"overtravel", &s.overtravel, "Commanded depth below the target, so that pads are pressed down",
+           Dimension::length, from(0, 1)});
+  v.field({"settle", &s.settle, "Time at rest at the end", Dimension::time, from(0)});
+  v.section({"uniform", "All grippers at once", false, {}, true}, true, [&] {
+    v.field({"duration", &s.uniform_duration, "From the preshape to the mold", Dimension::time, positive()});
+  });
+  v.section({"wave", "Rings of grippers, one after another", false, {}, true}, true, [&] {
+    v.field({"duration", &s.wave_duration, "Stroke of one group", Dimension::time, positive()});
+    v.field({"delay", &s.wave_delay, "Between one group and the next", Dimension::time, from(0)});
+    v.field({"delay_from", choice(s.wave_delay_from, {"start", "end"}),
+             "The delay counts from the start or the end of the group before"});
+    v.field({"start", &s.wave_start, "Where the wave starts, in the ply (u, v)", Dimension::length});
+  });
+}
+
+void visit_score(FieldVisitor& v, ScoreOptions& s) {
+  v.field({"wrinkle_threshold", &s.wrinkle_threshold,
+           "A gap above it counts as wrinkled where the ply does not "
+           "bridge a hollow",
+           Dimension::length, positive()});
+  v.field({"target_separation", &s.target_separation, "Reference of the separations", Dimension::length,
+           positive()});
+  v.field({"target_boundary_offset", &s.target_boundary_offset, "Reference of the boundary offsets",
+           Dimension::length, positive()});
+  v.field({"locking_angle",
+           &s.locking_angle_deg,
+           "Shear above it is penalised",
+           Dimension::degrees,
+           {0, 90, true, true}});
+  v.field(
+      {"strain_limit", &s.strain_limit, "Fibre strain above it is penalised", Dimension::none, positive(1)});
+  v.section({"weights", "Of the parts of the objective; 0 leaves a part out", false, {}, true}, true, [&] {
+    v.field(
+        {"max_separation", &s.weight_max_separation, "Of the largest separation", Dimension::none, from(0)});
+    v.field(
+        {"rms_separation", &s.weight_rms_separation, "Of the r.m.s. separation", Dimension::none, from(0)});
+    v.field({"wrinkled_area", &s.weight_wrinkled_area, "Of the wrinkled area, per 1 % of the ply",
+             Dimension::none, from(0)});
+    v.field({"max_boundary_offset", &s.weight_max_boundary_offset, "Of the largest boundary offset",
+             Dimension::none, from(0)});
+    v.field({"rms_boundary_offset", &s.weight_rms_boundary_offset, "Of the r.m.s. boundary offset",
+             Dimension::none, from(0)});
+    v.field({"shear", &s.weight_shear, "Per degree above the locking angle", Dimension::none, from(0)});
+    v.field({"duration", &s.weight_duration, "Per second of the schedule", Dimension::none, from(0)});
+  });
+}
+
+void visit_optimise(FieldVisitor& v, OptimiseOptions& o) {
+  v.field({"wave_evaluations", &o.wave_evaluations, "Budget of the wave family's search", Dimension::none,
+           from(0, 1e6)});
+  v.field({"gripper_evaluations", &o.gripper_evaluations, "Budget of the per-gripper search", Dimension::none,
+           from(0, 1e6)});
+  v.field({"finalists", &o.finalists, "Best schedules that are evaluated at the reporting fidelity",
+           Dimension::none, from(1, 1e4)});
+  v.field({"shortest_stroke", &o.shortest_stroke, "Of a gripper after the preshape", Dimension::time,
+           positive()});
+  v.field({"longest_sequence", &o.longest_sequence, "After the preshape", Dimension::time, positive()});
+  v.field({"seed", &o.seed, "Of all random numbers"});
+}
+
+void visit_fem(FieldVisitor& v, FemOptions& f) {
+  v.field({"mesh_size", &f.mesh_size, "Largest element edge", Dimension::length, from(1e-4, 1)});
+  v.field({"section_points",
+           &f.section_points,
+           "Through the thickness",
+           Dimension::none,
+           {1, 5, false, false, true}});
+  v.field({"fibre_points", &f.fibre_points,
+           "Across each fibre at mid-thickness; with 1 only hourglass control keeps opposite edges alike",
+           Dimension::none, from(1, 2)});
+  v.field({"precision", choice(f.precision, {"double", "single"}),
+           "Of the shell's forces; positions, sums of forces, contact and books are in double"});
+  v.field({"mass_scaling", &f.mass_scaling, "Factor on the mass; gravity acts on the unscaled mass",
+           Dimension::none, from(1, 1e6)});
+  v.field({"selective_scaling", &f.selective_scaling,
+           "The step may be this many times longer: mass is added to the stretch of fibres alone; 1: none",
+           Dimension::none, from(1, 8)});
+  v.field({"target_step", &f.target_step, "Mass is added to nodes where the step would be smaller; 0: none",
+           Dimension::time, from(0, 1)});
+  v.field({"time_scaling", &f.time_scaling, "The schedule is played this many times faster than written",
+           Dimension::none, from(0.1, 1e4)});
+  v.field(
+      {"step_safety", &f.step_safety, "Share of the estimated stable step", Dimension::none, positive(1)});
+  v.field({"step_interval", &f.step_interval,
+           "Steps between two choices of the step; 0: one step that is safe for all strains of the tables",
+           Dimension::none, from(0, 1e4)});
+  v.field({"rates", &f.rates, "false: only the slowest curves of the material are used"});
+  v.field({"bulk_viscosity", &f.bulk_viscosity,
+           "Damping ratio along the fibres at the highest frequency; keeps fibres stable that are stiffer in "
+           "tension than in compression",
+           Dimension::none, from(0, 1)});
+  v.field({"hourglass", &f.hourglass,
+           "In-plane hourglass stiffness over that of a bilinear element of fibre in compression",
+           Dimension::none, from(0, 100)});
+  v.field({"contact_stiffness", &f.contact_stiffness,
+           "Contact stiffness of a free node over its membrane stiffness", Dimension::none, positive(100)});
+  v.field({"contact_damping", &f.contact_damping,
+           "Share of the critical damping of a node on its contact spring", Dimension::none, from(0, 1)});
+}
+
+void visit_physics(FieldVisitor& v, CaseFields& fields) {
+  Case& c = fields.value;
+  optional_section(
+      v, {"friction", "Coulomb friction between ply and mold", false, {"mold", "material"}}, c.friction, 0.0,
+      [&v](double& coefficient) {
+        v.field({"coefficient", &coefficient, "Coulomb coefficient", Dimension::none, from(0, 100), true});
+      });
+  MappingOptions mapping;
+  mapping.start = c.ply.position;
+  optional_section(v, {"mapping", "Kinematic energy mapping of the ply onto the mold", false, {"mold"}},
+                   c.mapping, mapping, [&v](MappingOptions& options) { visit_mapping(v, options); });
+  optional_section(v, {"grippers", "The gripper grid", false, {"mold", "mapping", "material"}}, c.grippers,
+                   RigOptions(), [&v, &c](RigOptions& rig) {
+                     visit_grippers(v, rig);
+                     v.field({"source", &c.grippers_source, "Where the figures come from"});
+                   });
+  v.field({"gravity",
+           &c.gravity,
+           "Downwards",
+           Dimension::acceleration,
+           from(0, 1e3),
+           false,
+           "absent: no gravity",
+           {"material"}});
+  optional_section(v, {"damping", "Mass-proportional damping", false, {"material"}}, fields.damping,
+                   DampingFields(), [&v](DampingFields& damping) { visit_damping(v, damping); });
+  optional_section(v, {"rest", "When a run may end before its time: once nothing moves", false, {"material"}},
+                   c.rest, RestCriterion(), [&v](RestCriterion& rest) {
+                     v.field({"speed", &rest.speed, "R.m.s. speed of the ply below which it is at rest",
+                              Dimension::velocity, positive()});
+                     v.field({"hold", &rest.hold, "For how long it must be so, on the simulation's clock",
+                              Dimension::time, from(0)});
+                   });
+  v.section({"supports", "What holds a ply without grippers", false, {"material"}}, !c.clamped.empty(), [&] {
+    ChoiceList edges{{"left", "right", "bottom", "top"}, {}, {}};
+    edges.get = [&c] {
+      std::vector<int> indices;
+      for (const Edge edge : c.clamped) indices.push_back(int(edge));
+      return indices;
+    };
+    edges.set = [&c](const std::vector<int>& indices) {
+      c.clamped.clear();
+      for (const int index : indices) c.clamped.push_back(Edge(index));
+    };
+    v.field({"clamped",
+             edges,
+             "Edges of the ply: smallest u, largest u, smallest v, largest v",
+             Dimension::none,
+             {},
+             true});
+  });
+  ObjectList grips = object_list("grips", "Rigid clamps on straight pieces of the outline, which may move",
+                                 c.grips, [&v](GripOptions& grip) { visit_grip(v, grip); });
+  grips.needs = {"material"};
+  v.list(grips);
+  ObjectList probes =
+      object_list("probes", "Points of the ply whose displacement is reported", c.probes, [&v](Probe& probe) {
+        v.field({"name", &probe.name, "Name in the results", Dimension::none, {}, true});
+        v.field({"place", &probe.place, "In the ply (u, v)", Dimension::length, {}, true});
+      });
+  probes.needs = {"material"};
+  v.list(probes);
+  ObjectList references = object_list(
+      "references", "Published results that are shown beside the own ones", c.references, [&v](Reference& r) {
+        v.field({"name", &r.name, "Name in tables", Dimension::none, {}, true});
+        v.field(
+            {"max_separation", &r.max_separation, "Largest separation", Dimension::length, from(0), true});
+        v.field({"max_boundary_offset", &r.max_boundary_offset, "Largest boundary offset", Dimension::length,
+                 from(0), true});
+      });
+  references.needs = {"grippers"};
+  v.list(references);
+  v.field({"start_height",
+           &c.start_height,
+           "Height of the level ply without grippers",
+           Dimension::length,
+           from(-kLargestLength, kLargestLength),
+           false,
+           "",
+           {"material"}});
+  v.field({"duration",
+           &c.duration,
+           "Of a run without grippers",
+           Dimension::time,
+           from(0, 1e5),
+           false,
+           "",
+           {"material"}});
+}
+
+}  // namespace
+
+void visit_case(FieldVisitor& v, CaseFields& fields) {
+  Case& c = fields.value;
+  int format = 0;
+  v.field({"format", choice(format, {kCaseFormat}), "What this file is", Dimension::none, {}, true});
+  v.field(
+      {"name", &c.name, "Short name in tables and reports", Dimension::none, {}, false, "the file's name"});
+  v.field({"description", &c.description, "What the case is about"});
+  v.section({"ply", "The flat ply: a rectangle, or any outline", true}, true, [&] { visit_ply(v, fields); });
+  optional_section(v, {"material", "The fabric; an object, or the name of a file that holds it"},
+                   fields.material, MaterialFields(),
+                   [&v](MaterialFields& material) { visit_material(v, material); });
+  optional_section(v, {"mold", "The rigid mold; an object, or the name of a file that holds it"}, fields.mold,
+                   MoldFields(), [&v](MoldFields& mold) { visit_mold(v, mold); });
+  visit_physics(v, fields);
+  v.section({"schedule", "The baseline strategies and what they share", false, {"grippers"}, true}, true,
+            [&] { visit_schedule(v, c.schedule); });
+  v.section({"score", "What a draped ply is worth", false, {"mapping"}, true}, true,
+            [&] { visit_score(v, c.score); });
+  v.section({"optimise", "Budgets and limits of the search", false, {"grippers"}, true}, true,
+            [&] { visit_optimise(v, c.optimise); });
+  v.section({"fem", "Numerical settings of the reported run", false, {"material"}, true}, true,
+            [&] { visit_fem(v, fields.fem); });
+  NamedObjects fidelities{
+      "fidelities",
+      "Named numerical settings, each a change of `fem`: `screen` and `search` are used by the "
+      "optimiser; `report` is `fem` itself unless it is named here",
+      {"material"}};
+  for (const auto& [name, options] : c.fidelities) fidelities.names.push_back(name);
+  fidelities.visit = [&](const std::string& name) {
+    visit_fem(v, c.fidelities.try_emplace(name, fields.fem).first->second);
+  };
+  v.named(fidelities);
+}
+
+}  // namespace drapeplan

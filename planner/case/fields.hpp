@@ -1,0 +1,85 @@
+// Every field of a case file, stated once: JSON name, meaning, unit, range, default. The reader, the echo of
+// defaults, the schema, `explain` and the error messages are visitors of this one statement.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/case/case.hpp"
+#include "planner/input/field.hpp"
+
+namespace drapeplan {
+
+/// The mold as the file states it.
+struct MoldFields {
+  int shape = 1;  ///< index of Mold::Shape
+  Extent extent;
+  double angle = 0;
+  double unit = 1;
+  std::vector<PolynomialShape::Term> terms;
+  Eigen::Vector3d centre{0, 0, 0};
+  double radius = 0;
+  double azimuth = 0;
+};
+
+/// The curve at one rate, as the file states it.
+struct RateFields {
+  double rate = 0;
+  double factor = 1;
+  Curve curve;  ///< empty: the mode's own points
+};
+
+/// The stress curves of one mode as the file states them.
+struct CurveFields {
+  Curve curve;
+  double factor = 1;
+  std::string source;
+  std::vector<RateFields> rates;  ///< empty: no dependence
+};
+
+/// The material as the file states it.
+struct MaterialFields {
+  std::string name, source;
+  int law = 0;  ///< 0 tables, 1 linear
+  double thickness = 0, areal_density = 0, transverse_shear_modulus = 0;
+  CurveFields tension, compression, shear;
+  double modulus = 0, shear_modulus = 0;
+  int shear_measure = 0;  ///< index of ShearMeasure
+  double rate_floor = Fabric().rate_floor, rate_filter = Fabric().rate_filter;
+};
+
+/// Mass damping as the file states it: seed, Eqs. (4) and (5).
+struct DampingFields {
+  int by = 0;  ///< 0 alpha, 1 strip
+  double alpha = 0;
+  double ratio = 1, length = 0;
+  std::optional<double> modulus;
+};
+
+/// A case as the file states it; sections that need work to become a Case stand beside it.
+struct CaseFields {
+  Case value;
+  std::optional<MaterialFields> material;
+  std::optional<MoldFields> mold;
+  std::optional<double> width, height;  ///< of a rectangular ply
+  std::optional<DampingFields> damping;
+  FemOptions fem;
+};
+
+inline constexpr const char* kCaseFormat = "drapeplan-case 1";
+
+/// States all fields of a case to `visitor`, in the order of the documentation.
+void visit_case(FieldVisitor& visitor, CaseFields& fields);
+
+/// Sets the ply's size from `width` and `height` or from its outline.
+void complete_ply(CaseFields& fields);
+
+/// The table that a mode's fields state; @param fields  without errors.
+StressTable stress_table(const CurveFields& fields);
+
+/// Fields into a case and back. `complete` expects fields without errors.
+void complete_case(CaseFields& fields);
+CaseFields fields_of(const Case& value);
+
+}  // namespace drapeplan

@@ -1,0 +1,134 @@
+#include "planner/case/material_fields.hpp"
+
+#include "planner/input/kit.hpp"
+
+namespace drapeplan {
+namespace {
+
+void visit_curve(FieldVisitor& v, CurveFields& fields, Dimension abscissa) {
+  v.field({"points",
+           Table{&fields.curve, abscissa},
+           "Rows [strain, stress]; the first row names the units, the second is [0, 0]; strains increase, "
+           "stresses "
+           "do not decrease; straight between rows, and beyond the last one with the last slope",
+           Dimension::none,
+           {},
+           true});
+  v.field({"factor", &fields.factor, "All stresses are multiplied by it", Dimension::none, positive()});
+  v.field({"source", &fields.source, "What was measured, by whom, and what is assumed"});
+  ObjectList rates =
+      object_list("rates", "Curves by the rate of strain, slowest first; absent: no dependence on the rate",
+                  fields.rates, [&v, abscissa](RateFields& rate) {
+                    v.field({"rate", &rate.rate, "Of growing strain; slower and faster than all: constant",
+                             Dimension::rate, from(0), true});
+                    v.field({"factor", &rate.factor, "Stresses of this rate are multiplied by it",
+                             Dimension::none, positive()});
+                    Field points{"points", Table{&rate.curve, abscissa}, "Curve at this rate"};
+                    points.default_words = "the points of the mode";
+                    v.field(points);
+                  });
+  v.list(rates);
+}
+
+}  // namespace
+
+void visit_material(FieldVisitor& v, MaterialFields& m) {
+  v.field({"name", &m.name, "What the material is called"});
+  v.field({"source", &m.source, "Where the figures come from"});
+  v.field({"law", choice(m.law, {"tables", "linear"}),
+           "`tables`: measured curves per mode; `linear`: straight ones from moduli"});
+  v.field({"thickness", &m.thickness, "Of the ply", Dimension::length, positive(0.05), true});
+  v.field(
+      {"areal_density", &m.areal_density, "Mass per area", Dimension::areal_density, positive(100), true});
+  v.field({"transverse_shear_modulus", &m.transverse_shear_modulus, "G13 = G23", Dimension::stress,
+           positive(), true});
+  v.alternative("law", "tables", m.law == 0, [&] {
+    v.section({"tension", "Nominal fibre stress over nominal strain", true}, true,
+              [&] { visit_curve(v, m.tension, Dimension::strain); });
+    v.section({"compression", "Fibre in compression, magnitudes", true}, true,
+              [&] { visit_curve(v, m.compression, Dimension::strain); });
+    v.section({"shear", "Shear stress over shear angle", true}, true, [&] {
+      visit_curve(v, m.shear, Dimension::angle);
+      v.field({"measure", choice(m.shear_measure, {"conjugate", "force"}),
+               "`conjugate`: stress times rate of the angle is power per volume; `force`: shear force per "
+               "length over thickness, which is the conjugate stress over the cosine of the angle"});
+    });
+    v.field({"rate_floor", &m.rate_floor,
+             "Between two rates stresses are linear in log(1 + rate / floor): slower rates count linearly, "
+             "faster ones in the logarithm",
+             Dimension::rate, positive()});
+    v.field({"rate_filter", &m.rate_filter, "Time constant over which rates are averaged", Dimension::time,
+             positive()});
+  });
+  v.alternative("law", "linear", m.law == 1, [&] {
+    v.field({"modulus", &m.modulus, "Fibre modulus, the same in tension and compression", Dimension::stress,
+             positive(), true});
+    v.field({"shear_modulus", &m.shear_modulus, "Shear stress over shear angle", Dimension::stress, from(0),
+             true});
+  });
+}
+
+void visit_mold(FieldVisitor& v, MoldFields& m) {
+  v.field({"shape",
+           choice(m.shape, {"plane", "polynomial", "sphere", "cylinder"}),
+           "`plane` through the origin; `polynomial` height field; upper half of a `sphere` or a lying "
+           "`cylinder`",
+           Dimension::none,
+           {},
+           true});
+  v.field({"extent",
+           &m.extent,
+           "Part of the x-y plane that the mold covers: [[x0, x1], [y0, y1]]",
+           Dimension::length,
+           {},
+           true});
+  v.alternative("shape", "plane", m.shape == 0, [&] {
+    v.field({"angle",
+             &m.angle,
+             "The plane falls by it towards +x",
+             Dimension::angle,
+             {-kRightAngle, kRightAngle, true, true}});
+  });
+  v.alternative("shape", "polynomial", m.shape == 1, [&] {
+    v.field({"unit", &m.unit, "Length L in z/L = sum of coefficient (x/L)^x (y/L)^y", Dimension::length,
+             positive()});
+    ObjectList terms =
+        object_list("terms", "Terms of the height", m.terms, [&v](PolynomialShape::Term& term) {
+          v.field({"x", &term.i, "Power of x", Dimension::none, from(0, 12), true});
+          v.field({"y", &term.j, "Power of y", Dimension::none, from(0, 12), true});
+          v.field({"coefficient", &term.coefficient, "Dimensionless, see `unit`", Dimension::none, {}, true});
+        });
+    terms.required = true;
+    v.list(terms);
+  });
+  const auto round = [&] {
+    v.field(
+        {"centre", &m.centre, "Centre of the sphere, or a point of the cylinder's axis", Dimension::length});
+    v.field({"radius", &m.radius, "Of the sphere or cylinder", Dimension::length, positive(1e3), true});
+  };
+  v.alternative("shape", "sphere", m.shape == 2, round);
+  v.alternative("shape", "cylinder", m.shape == 3, [&] {
+    round();
+    v.field({"azimuth", &m.azimuth, "Direction of the axis, from +x towards +y", Dimension::angle});
+  });
+}
+
+void visit_damping(FieldVisitor& v, DampingFields& d) {
+  v.field({"by", choice(d.by, {"alpha", "strip"}),
+           "`alpha`: the rate itself; `strip`: from the lowest frequency of a clamped strip"});
+  v.alternative("by", "alpha", d.by == 0, [&] {
+    v.field({"alpha", &d.alpha,
+             "Rate, of the unscaled ply: twice the damping ratio times the lowest angular frequency",
+             Dimension::rate, from(0, 1e6), true});
+  });
+  v.alternative("by", "strip", d.by == 1, [&] {
+    v.field({"ratio", &d.ratio, "Damping ratio of the strip; 1 is critical", Dimension::none, from(0, 100)});
+    v.field(
+        {"length", &d.length, "Free length of the strip", Dimension::length, positive(kLargestLength), true});
+    Field modulus{"modulus", &d.modulus, "Static bending modulus of the ply", Dimension::stress, positive()};
+    modulus.default_words = "material.modulus of a linear law";
+    v.field(modulus);
+  });
+}
+
+}  // namespace drapeplan

@@ -1,0 +1,13 @@
+// Fields of what a case is made of: the fabric, its damping and the mold; parts of the one statement of
+// fields.hpp.
+#pragma once
+
+#include "planner/case/fields.hpp"
+
+namespace drapeplan {
+
+void visit_material(FieldVisitor& visitor, MaterialFields& material);
+void visit_mold(FieldVisitor& visitor, MoldFields& mold);
+void visit_damping(FieldVisitor& visitor, DampingFields& damping);
+
+}  // namespace drapeplan

@@ -1,0 +1,94 @@
+// map: kinematic energy mapping only.
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "planner/cli/cli.hpp"
+#include "planner/drape/map_result.hpp"
+
+namespace drapeplan {
+namespace {
+
+using nlohmann::json;
+
+struct MapOptions {
+  CommonOptions common;
+  std::string file;
+};
+
+json point_json(const Eigen::Vector3d& p) {
+  return {p.x(), p.y(), p.z()};
+}
+
+json points_json(const std::vector<Eigen::Vector3d>& points) {
+  json list = json::array();
+  for (const Eigen::Vector3d& p : points) list.push_back(point_json(p));
+  return list;
+}
+
+json result_json(const Case& value, const MapResult& map) {
+  json targets = json::array();
+  for (size_t k = 0; k < map.targets.size(); ++k) {
+    const int columns = value.grippers->columns;
+    const json gripper = {1 + int(k) % columns, 1 + int(k) / columns};
+    targets.push_back({{"gripper", gripper}, {"position", point_json(map.targets[k])}});
+  }
+  return {{"targets", std::move(targets)},
+          {"boundary", points_json(map.boundary)},
+          {"corners", points_json(map.corners)},
+          {"max_shear_deg", map.max_shear_deg},
+          {"mean_shear_deg", map.mean_shear_deg}};
+}
+
+std::string millimetres(const std::string& label, const Eigen::Vector3d& p) {
+  char line[120];
+  std::snprintf(line, sizeof line, "  %-12s %9.2f %9.2f %9.2f\n", label.c_str(), 1e3 * p.x(), 1e3 * p.y(),
+                1e3 * p.z());
+  return line;
+}
+
+std::string result_text(const Case& value, const MapResult& map) {
+  char line[160];
+  std::snprintf(line, sizeof line,
+                "%s: shear angle largest %.2f deg, mean %.2f deg; net of %zu x %zu cells\n\n",
+                value.name.substr(0, 60).c_str(), map.max_shear_deg, map.mean_shear_deg, map.net.u.size() - 1,
+                map.net.v.size() - 1);
+  std::string text = line;
+  text += "  place             x [mm]    y [mm]    z [mm]\n";
+  const char* corners[] = {"corner (-,-)", "corner (+,-)", "corner (+,+)", "corner (-,+)"};
+  for (size_t k = 0; k < map.corners.size(); ++k) text += millimetres(corners[k], map.corners[k]);
+  for (size_t k = 0; k < map.targets.size(); ++k) {
+    const int columns = value.grippers->columns;
+    text += millimetres(
+        "gripper " + std::to_string(1 + int(k) % columns) + "," + std::to_string(1 + int(k) / columns),
+        map.targets[k]);
+  }
+  return text;
+}
+
+int map(const MapOptions& options) {
+  const std::optional<Case> value = load_case(options.file, options.common, {"mapping"});
+  if (!value) return kInputWrong;
+  try {
+    const MapResult result = map_case(*value);
+    print_warnings(map_warnings(*value, result), options.common);
+    return deliver(result_json(*value, result), result_text(*value, result), options.common, &*value);
+  } catch (const std::domain_error& error) {
+    std::cerr << options.file << ": the ply cannot be mapped: " << error.what() << '\n';
+    return kNotFinished;
+  }
+}
+
+}  // namespace
+
+void add_map(CLI::App& program, Action& action) {
+  add_verb<MapOptions>(
+      program, action, "map", "maps the ply onto the mold: targets, boundary, shear",
+      [](CLI::App& verb, MapOptions& options) {
+        verb.add_option("CASE", options.file, "case file")->required();
+      },
+      map);
+}
+
+}  // namespace drapeplan

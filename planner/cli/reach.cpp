@@ -1,0 +1,88 @@
+// reach: how close the rig can come to its targets at all.
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "planner/cli/cli.hpp"
+#include "planner/drape/map_result.hpp"
+#include "planner/drape/problem.hpp"
+#include "planner/reach/reach.hpp"
+
+namespace drapeplan {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kRandomStarts = 2;  // beside the targets; their agreement is reported as start_spread
+
+struct ReachOptions {
+  CommonOptions common;
+  std::string file;
+};
+
+json result_json(const ReachProblem& problem, const ReachResult& reach) {
+  json positions = json::array();
+  for (const Eigen::Vector3d& p : reach.positions) positions.push_back({p.x(), p.y(), p.z()});
+  return {{"floor_max", reach.floor_max},           {"floor_rms", reach.floor_rms},
+          {"per_gripper", reach.per_gripper},       {"positions", std::move(positions)},
+          {"link_violation", reach.link_violation}, {"start_spread", reach.start_spread},
+          {"converged", reach.converged},           {"status", reach.status},
+          {"wall_seconds", reach.wall_seconds},     {"meaning", explain_reach(problem, reach)}};
+}
+
+/// The distances as a map of the grid, seen from above: j upwards, i to the right.
+std::string result_text(const ReachProblem& problem, const ReachResult& reach) {
+  char cell[80];
+  std::snprintf(cell, sizeof cell,
+                "smallest possible distance to the targets: r.m.s. %.2f mm, largest %.2f mm\n\n",
+                1e3 * reach.floor_rms, 1e3 * reach.floor_max);
+  std::string text = cell;
+  text += "  distance [mm] of gripper (i, j) at the r.m.s. optimum\n";
+  for (int j = problem.rig.rows - 1; j >= 0; --j) {
+    std::snprintf(cell, sizeof cell, "  j = %-3d", j + 1);
+    text += cell;
+    for (int i = 0; i < problem.rig.columns; ++i) {
+      std::snprintf(cell, sizeof cell, "%8.2f", 1e3 * reach.per_gripper[size_t(j * problem.rig.columns + i)]);
+      text += cell;
+    }
+    text += '\n';
+  }
+  text += "  i =    ";
+  for (int i = 0; i < problem.rig.columns; ++i) {
+    std::snprintf(cell, sizeof cell, "%8d", i + 1);
+    text += cell;
+  }
+  return text + "\n\n" + explain_reach(problem, reach) + "\n";
+}
+
+int reach(const ReachOptions& options) {
+  const std::optional<Case> value = load_case(options.file, options.common, {"grippers"});
+  if (!value) return kInputWrong;
+  try {
+    const MapResult map = map_case(*value);
+    print_warnings(map_warnings(*value, map), options.common);
+    const ReachProblem problem = reach_problem_of(*value, map.targets);
+    const ReachResult result = solve_reach(problem, kRandomStarts, value->optimise.seed);
+    const int code =
+        deliver(result_json(problem, result), result_text(problem, result), options.common, &*value);
+    if (!result.converged) std::cerr << options.file << ": not converged: " << result.status << '\n';
+    return result.converged ? code : kNotFinished;
+  } catch (const std::domain_error& error) {
+    std::cerr << options.file << ": the ply cannot be mapped: " << error.what() << '\n';
+    return kNotFinished;
+  }
+}
+
+}  // namespace
+
+void add_reach(CLI::App& program, Action& action) {
+  add_verb<ReachOptions>(
+      program, action, "reach", "how close the grippers can come to their targets, whatever the schedule",
+      [](CLI::App& verb, ReachOptions& options) {
+        verb.add_option("CASE", options.file, "case file")->required();
+      },
+      reach);
+}
+
+}  // namespace drapeplan

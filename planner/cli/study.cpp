@@ -1,0 +1,352 @@
+// study: error against run time.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "planner/base/statistics.hpp"
+#include "planner/cli/cli.hpp"
+#include "planner/drape/problem.hpp"
+#include "planner/search/plan.hpp"
+#include "planner/study/files.hpp"
+#include "planner/study/runner.hpp"
+
+namespace drapeplan {
+namespace {
+
+using nlohmann::json;
+
+struct StudyOptions {
+  CommonOptions common;
+  std::string file;
+  std::vector<std::string> parts;  ///< empty: all that the case can have
+  std::vector<std::string> at;
+  double refinement = 2.5;
+  int schedules = 24;
+  int repeats = 3;
+  bool resume = false;
+  std::string run;  ///< folder of a plan
+
+  [[nodiscard]] bool wants(const char* part) const {
+    return parts.empty() || std::find(parts.begin(), parts.end(), part) != parts.end();
+  }
+};
+
+/// A line on stderr every few seconds: what is done, how long still.
+class ProgressLine {
+ public:
+  void operator()(const std::string& what, int done, int of) {
+    const auto now = std::chrono::steady_clock::now();
+    if (what != what_) what_ = what, start_ = now;
+    constexpr int kSeconds = 5;
+    if (done < of && now - shown_ < std::chrono::seconds(kSeconds)) return;
+    shown_ = now;
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    std::fprintf(stderr, "  %4d/%d  %s", done, of, what.c_str());
+    if (done > 1 && done < of) std::fprintf(stderr, "   about %.0f s left", seconds / done * (of - done));
+    std::fputc('\n', stderr);
+  }
+
+ private:
+  std::string what_;
+  std::chrono::steady_clock::time_point start_, shown_{};
+};
+
+/// What every part of a study needs.
+struct StudyWork {
+  const StudySubject& subject;
+  StudyRunner& runner;
+  const StudyOptions& options;
+};
+
+/// Runs every setting with every schedule. @return by setting, then by schedule.
+std::vector<std::vector<StudyRun>> run_all(StudyWork& work, const std::string& what,
+                                           const std::vector<Settings>& settings,
+                                           const std::vector<Schedule>& schedules) {
+  std::vector<StudyJob> jobs;
+  for (const Settings& one : settings) {
+    for (const Schedule& schedule : schedules) jobs.push_back({one, schedule});
+  }
+  const std::vector<StudyRun> runs = work.runner.run(what, jobs);
+  std::vector<std::vector<StudyRun>> result;
+  for (size_t k = 0; k < settings.size(); ++k) {
+    const auto first = runs.begin() + std::ptrdiff_t(k * schedules.size());
+    result.emplace_back(first, first + std::ptrdiff_t(schedules.size()));
+  }
+  return result;
+}
+
+void sweep(StudyWork& work, Study& study) {
+  constexpr int kBaselines = 2;  // uniform and wave
+  const std::vector<Schedule> schedules = work.subject.schedules(kBaselines);
+  study.points = sweep_points(work.subject);
+  std::vector<Settings> settings{study.reference, {}};
+  for (const StudyPoint& point : study.points) settings.push_back(point.settings);
+  std::vector<std::vector<StudyRun>> runs = run_all(work, "sweep", settings, schedules);
+  study.reference_runs = runs[0];
+  std::map<std::string, std::vector<StudyRun>> careful;  // the first point of each curve
+  for (size_t k = 0; k < study.points.size(); ++k) {
+    StudyPoint& point = study.points[k];
+    point.runs = std::move(runs[k + 2]);
+    const auto [first, fresh] = careful.try_emplace(point.curve, point.runs);
+    point.error = study_errors(point.runs, study.reference_runs, study.drapes);
+    point.knob_error = study_errors(point.runs, first->second, study.drapes);
+    if (!fresh || point.settings.size() != 1 || point.curve.starts_with("fidelity")) continue;
+    const auto left = study_errors(runs[1], point.runs, study.drapes);
+    if (left.count("relative") > 0) study.base_error[point.curve] = left.at("relative");
+  }
+}
+
+/// Every fidelity of the case, then every combination of the sweep that is cheap enough to screen with, if
+/// the sweep was run; without those that turn the material's rates on or off against the reporting fidelity:
+/// other physics, not another accuracy.
+std::vector<RankRow> rank_rows(const StudySubject& subject, const std::vector<StudyPoint>& swept) {
+  constexpr double kScreens = 0.04;  // of the updates of the reporting fidelity
+  double most = std::numeric_limits<double>::infinity();
+  for (const StudyPoint& point : swept) {
+    if (point.valid() && point.curve == std::string("fidelity ") + kReport)
+      most = kScreens * point.mean(&StudyRun::element_updates);
+  }
+  std::vector<RankRow> named, others;
+  const bool rates = subject.changes_of(kReport).count("fem.rates") > 0;
+  for (const StudyPoint& point : swept.empty() ? sweep_points(subject) : swept) {
+    const std::string fidelity = "fidelity ";
+    if ((point.settings.count("fem.rates") > 0) != rates) continue;
+    if (point.curve.starts_with(fidelity)) {
+      named.push_back({.name = point.curve.substr(fidelity.size()), .settings = point.settings});
+    } else if (point.curve == "combination" && (swept.empty() || point.valid()) &&
+               point.mean(&StudyRun::element_updates) <= most) {
+      others.push_back({.name = "", .settings = point.settings});
+    }
+  }
+  named.insert(named.end(), others.begin(), others.end());
+  return named;
+}
+
+std::vector<double> objectives(const std::vector<StudyRun>& runs) {
+  std::vector<double> values;
+  for (const StudyRun& run : runs) values.push_back(run.valid ? run.objective : std::nan(""));
+  return values;
+}
+
+double median_of(const std::vector<StudyRun>& runs, double StudyRun::*member) {
+  std::vector<double> values;
+  for (const StudyRun& run : runs) {
+    if (run.valid) values.push_back(run.*member);
+  }
+  return median(values);
+}
+
+/// The reference of the ranks is the reporting fidelity: it decides what is claimed.
+void rank(StudyWork& work, Study& study) {
+  const std::vector<Schedule> schedules = work.subject.schedules(work.options.schedules);
+  study.schedules = int(schedules.size());
+  study.ranks = rank_rows(work.subject, study.points);
+  const Settings reference = work.subject.changes_of(kReport);
+  study.rank_reference = "the reporting fidelity";
+  std::vector<Settings> settings{reference};
+  for (const RankRow& row : study.ranks) settings.push_back(row.settings);
+  const std::vector<std::vector<StudyRun>> runs = run_all(work, "ranks", settings, schedules);
+  for (size_t k = 0; k < study.ranks.size(); ++k) {
+    study.ranks[k].wall_seconds = median_of(runs[k + 1], &StudyRun::wall_seconds);
+    study.ranks[k].cpu_seconds = median_of(runs[k + 1], &StudyRun::cpu_seconds);
+    study.ranks[k].objectives = objectives(runs[k + 1]);
+  }
+  rank_against(objectives(runs[0]), study.ranks);
+}
+
+void measure_noise(StudyWork& work, Study& study) {
+  constexpr int kPoints = 7;
+  constexpr double kStep = 1e-3;  // of the family's box: a few milliseconds, far below what a robot can tell
+  const std::vector<Schedule> line = work.subject.line_of_schedules(kPoints, kStep);
+  std::vector<Settings> settings{{}};
+  std::vector<std::string> names{"base"};
+  for (const std::string& name : work.subject.fidelities()) {
+    const Settings changes = work.subject.changes_of(name);
+    if (changes.count("fem.rates") > 0) continue;  // other physics
+    names.push_back(name);
+    settings.push_back(changes);
+  }
+  const std::vector<std::vector<StudyRun>> runs = run_all(work, "noise", settings, line);
+  for (size_t k = 0; k < runs.size(); ++k) {
+    const std::vector<double> values = objectives(runs[k]);
+    if (std::any_of(values.begin(), values.end(), [](double value) { return !std::isfinite(value); }))
+      continue;
+    const NoiseEstimate noise = difference_noise(values);
+    study.noise.push_back({names[k], settings[k], kStep, median(values), noise.noise, noise.consistent});
+  }
+}
+
+/// The search of a run directory of `plan`, which is made now if none is named; beside it, as many evenly
+/// spread schedules as are ranked.
+void trace_search(StudyWork& work, Study& study, const std::filesystem::path& folder) {
+  const Case whole = work.subject.whole();
+  const std::string fidelity = whole.fidelities.count("search") > 0 ? "search" : kReport;
+  std::filesystem::path run = work.options.run;
+  if (run.empty()) {
+    run = folder / "plan";
+    const DrapeProblem problem(whole);
+    (void)plan(problem, {run, work.options.resume, work.options.common.threads}, {});
+  }
+  EvaluationLog log((run / "evaluations.jsonl").string(), case_hash(whole));  // throws for another case's
+  study.searches.push_back(search_trace(log.evaluations(), fidelity));
+  SearchTrace even{"evenly spread schedules", {}, {}, {}};
+  double seconds = 0, best = std::numeric_limits<double>::infinity();
+  const std::vector<Schedule> schedules = work.subject.schedules(work.options.schedules);
+  const std::vector<StudyRun> spread =
+      run_all(work, "search", {work.subject.changes_of(fidelity)}, schedules).front();
+  for (const StudyRun& one : spread) {
+    seconds += one.wall_seconds;
+    if (one.valid) best = std::min(best, one.objective);
+    even.evaluations.push_back(double(even.evaluations.size() + 1));
+    even.seconds.push_back(seconds);
+    even.best.push_back(best);
+  }
+  study.searches.push_back(even);
+}
+
+Study study_case(const StudySubject& subject, StudyRunner& runner, const StudyOptions& options,
+                 const std::filesystem::path& folder) {
+  StudyWork work{subject, runner, options};
+  Study study;
+  study.case_name = subject.base().name;
+  study.drapes = subject.drapes();
+  study.at = subject.at();
+  study.reference = reference_settings(subject, options.refinement);
+  if (options.wants("mapping")) study.mapping = study_mapping(subject, options.repeats);
+  if (options.wants("reach")) study.reach = study_reach(subject, options.repeats);
+  if (options.wants("sweep")) sweep(work, study);
+  if (options.wants("noise") && study.drapes) measure_noise(work, study);
+  if (options.wants("ranks") && study.drapes) rank(work, study);
+  if (options.wants("search") && study.drapes) trace_search(work, study, folder);
+  return study;
+}
+
+/// The settings of --at, without what the case has anyway. Errors go to stderr.
+std::optional<Settings> settings_at(const StudyOptions& options) {
+  Settings at;
+  for (const std::string& text : options.at) {
+    const size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      std::cerr << "study: --at: \"" << text << "\" is not path=value\n";
+      return std::nullopt;
+    }
+    at[text.substr(0, equals)] = text.substr(equals + 1);
+  }
+  CommonOptions changed = options.common;
+  changed.overrides.insert(changed.overrides.end(), options.at.begin(), options.at.end());
+  if (!load_case(options.file, changed, {"material"})) return std::nullopt;
+  return at;
+}
+
+/// What is asked for by name must be possible. Errors go to stderr.
+bool parts_fit(const Case& value, const StudyOptions& options) {
+  bool fit = true;
+  const auto refuse = [&fit](const std::string& text) {
+    std::cerr << "study: " << text << '\n';
+    fit = false;
+  };
+  for (const std::string& part : options.parts) {
+    if (part == "mapping" && !value.mapping) refuse("--part mapping: the case has no section \"mapping\"");
+    const bool drapes = part == "ranks" || part == "noise" || part == "reach" || part == "search";
+    if (drapes && !value.grippers) refuse("--part " + part + ": the case has no section \"grippers\"");
+  }
+  if (options.run.empty()) return fit;
+  const std::string log = options.run + "/evaluations.jsonl";
+  try {
+    if (!std::filesystem::exists(log)) throw std::runtime_error(log + ": there is no such file");
+    const EvaluationLog known(log, case_hash(value));
+  } catch (const std::exception& error) {
+    refuse("--run: " + std::string(error.what()));
+  }
+  return fit;
+}
+
+/// The whole study, once all input is known to be good.
+int study_into(const std::filesystem::path& folder, const Case& value, const StudySubject& subject,
+               const StudyOptions& options) {
+  ProgressLine line;
+  StudyRunner runner(subject,
+                     {folder / "study.jsonl", options.resume, options.common.threads, options.repeats},
+                     [&](const std::string& what, int done, int of) {
+                       if (!options.common.quiet) line(what, done, of);
+                     });
+  const Study study = study_case(subject, runner, options, folder);
+  write_study(folder, study);
+  CommonOptions common = options.common;
+  common.out = folder.string();
+  const int code = deliver(study_json(study), study_text(study), common, &value);
+  const bool referred =
+      study.points.empty() || std::any_of(study.points.begin(), study.points.end(),
+                                          [](const StudyPoint& point) { return point.valid(); });
+  if (!referred) std::cerr << "study: no setting can be compared with the reference\n";
+  return referred ? code : kNotFinished;
+}
+
+int run_study(const StudyOptions& options) {
+  const std::optional<Case> value = load_case(options.file, options.common, {"material"});
+  if (!value || !parts_fit(*value, options)) return kInputWrong;
+  const std::optional<Settings> at = settings_at(options);
+  if (!at) return kInputWrong;
+  std::vector<std::string> overrides = options.common.overrides;
+  if (options.common.seed) overrides.push_back("optimise.seed=" + std::to_string(*options.common.seed));
+  const std::filesystem::path folder = options.common.out.empty()
+                                           ? std::filesystem::path("out") / ("study-" + value->name)
+                                           : std::filesystem::path(options.common.out);
+  try {
+    const StudySubject subject(options.file, overrides, *at);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw std::invalid_argument(folder.string() + ": cannot be made: " + error.message());
+    return study_into(folder, *value, subject, options);
+  } catch (const std::invalid_argument& error) {
+    std::cerr << error.what() << '\n';
+    return kInputWrong;
+  } catch (const std::runtime_error& error) {
+    std::cerr << "study: not finished: " << error.what() << "; what was done is kept in " << folder.string()
+              << '\n';
+    return kNotFinished;
+  }
+}
+
+}  // namespace
+
+void add_study(CLI::App& program, Action& action) {
+  add_verb<StudyOptions>(
+      program, action, "study", "error against run time: of settings, fidelities, mapping, reach and search",
+      [](CLI::App& verb, StudyOptions& options) {
+        verb.add_option("CASE", options.file, "case file")->required();
+        verb.add_option("--part", options.parts,
+                        "only these: sweep, ranks, noise, mapping, reach, search (repeatable; default: all)")
+            ->check(CLI::IsMember({"sweep", "ranks", "noise", "mapping", "reach", "search"}))
+            ->expected(1)
+            ->take_all()
+            ->allow_extra_args(false);
+        verb.add_option("--at", options.at,
+                        "turns knobs around this value instead of that of `fem` (repeatable)")
+            ->type_name("PATH=VALUE")
+            ->expected(1)
+            ->take_all()
+            ->allow_extra_args(false);
+        verb.add_option("--refinement", options.refinement,
+                        "mesh size of the base over that of the reference (default: 2.5)")
+            ->check(CLI::Range(1.01, 20.0));
+        verb.add_option("--schedules", options.schedules, "that are ranked (default: 24)")
+            ->check(CLI::Range(4, 1000));
+        verb.add_option("--repeats", options.repeats, "of short runs; the median time counts (default: 3)")
+            ->check(CLI::Range(1, 100));
+        verb.add_option("--run", options.run,
+                        "run directory of `plan` whose search is shown (default: it is run now)")
+            ->type_name("DIR")
+            ->check(CLI::ExistingDirectory);
+        verb.add_flag("--resume", options.resume,
+                      "runs that the folder's study.jsonl holds are not done again");
+      },
+      run_study);
+}
+
+}  // namespace drapeplan

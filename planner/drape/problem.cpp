@@ -1,0 +1,169 @@
+#include "planner/drape/problem.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "planner/drape/scoring.hpp"
+
+namespace drapeplan {
+namespace {
+
+constexpr int kReachStarts = 2;  // beside the targets; their agreement is reported
+
+bool on_edge(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& uv, Edge edge) {
+  const double slack = 1e-9;  // [m], round-off of mesh lines
+  switch (edge) {
+    case Edge::left:
+      return uv.x() <= box.min().x() + slack;
+    case Edge::right:
+      return uv.x() >= box.max().x() - slack;
+    case Edge::bottom:
+      return uv.y() <= box.min().y() + slack;
+    case Edge::top:
+      return uv.y() >= box.max().y() - slack;
+  }
+  return false;
+}
+
+/// Joints where their pads touch the mold at the mapped places [m].
+std::vector<Eigen::Vector3d> touching_joints(const Case& value, const std::vector<Eigen::Vector3d>& targets) {
+  const double above = 0.5 * value.material.thickness + value.grippers->joint_offset;
+  std::vector<Eigen::Vector3d> joints;
+  for (const Eigen::Vector3d& target : targets) {
+    joints.push_back(target + above * value.mold->normal(target.x(), target.y()));
+  }
+  return joints;
+}
+
+Eigen::Vector2d start_of_joint(const Case& value, int gripper) {
+  return value.ply.position + Eigen::Rotation2Dd(value.ply.angle) * value.grippers->place(gripper);
+}
+
+Mesh mesh_of(const Case& value, double mesh_size) {
+  std::vector<double> u,
+      v;  // lines through the pads, so that these cover the same piece of ply on every mesh
+  if (value.grippers) {
+    u = column_places(*value.grippers, mesh_size);
+    v = row_places(*value.grippers, mesh_size);
+  }
+  if (!value.ply.outline.empty()) return outline_mesh(value.ply.outline, mesh_size, u, v);
+  return rectangle_mesh(value.ply.width, value.ply.height, mesh_size, u, v);
+}
+
+/// Holds all nodes of the mesh's edge on the given piece.
+Grip grip_of(const GripOptions& options, const Mesh& mesh) {
+  Grip grip{options.name, {}, options.velocity, options.ramp};
+  const Eigen::Vector2d way = options.to - options.from;
+  for (const int node : mesh.outline) {
+    const Eigen::Vector2d offset = mesh.rest[size_t(node)] - options.from;
+    const double along = std::clamp(offset.dot(way) / way.squaredNorm(), 0.0, 1.0);
+    if ((offset - along * way).norm() <= kOnOutline) grip.nodes.push_back(node);
+  }
+  return grip;
+}
+
+}  // namespace
+
+Scene scene_of(const Case& value, const FemOptions& options) {
+  Scene scene;
+  const Ply& ply = value.ply;
+  scene.mesh = mesh_of(value, options.mesh_size);
+  scene.fabric = value.material;
+  scene.options = options;
+  scene.position = ply.position;
+  scene.angle = ply.angle;
+  scene.start_height = value.start_height;
+  scene.start = value.start;
+  scene.gravity = value.gravity;
+  scene.damping = value.damping;
+  scene.rest = value.rest;
+  scene.mold = value.mold;
+  scene.friction = value.friction;
+  scene.rig = value.grippers;
+  for (const GripOptions& grip : value.grips) scene.grips.push_back(grip_of(grip, scene.mesh));
+  const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
+  for (int n = 0; n < scene.mesh.node_count(); ++n) {
+    for (const Edge edge : value.clamped) {
+      if (!on_edge(box, scene.mesh.rest[size_t(n)], edge)) continue;
+      scene.clamped.push_back(n);
+      break;
+    }
+  }
+  return scene;
+}
+
+ReachProblem reach_problem_of(const Case& value, const std::vector<Eigen::Vector3d>& targets) {
+  const RigOptions& rig = *value.grippers;
+  ReachProblem problem{rig, *value.mold, targets, value.ply.position};
+  // Joints stand off from the ply's mid-surface, which lies half a ply above the mold.
+  problem.ply_thickness = 0.5 * value.material.thickness;
+  if (rig.fixed) {
+    const int index = ((*rig.fixed)[1] - 1) * rig.columns + (*rig.fixed)[0] - 1;
+    problem.fixed_place = start_of_joint(value, index);
+  }
+  return problem;
+}
+
+DrapeProblem::DrapeProblem(Case value)
+    : case_(std::move(value)),
+      map_(map_case(case_)),
+      reach_problem_(reach_problem_of(case_, map_.targets)),
+      reach_(std::make_unique<Lazy<ReachResult>>()) {
+  for (const auto& entry : case_.fidelities) models_[entry.first] = std::make_unique<Lazy<Model>>();
+  const bool reachable = case_.schedule.aim == Aim::reachable;
+  if (reachable && !reach().converged) {
+    throw std::domain_error("the schedule aims at reachable places, but there are none: " + reach().status);
+  }
+  frame_.rig = *case_.grippers;
+  const std::vector<Eigen::Vector3d> joints =
+      reachable ? reach().joints : touching_joints(case_, map_.targets);
+  for (const Eigen::Vector3d& joint : joints) frame_.target_z.push_back(joint.z());
+  for (int g = 0; frame_.rig.driven == Driven::xyz && g < frame_.rig.count(); ++g) {
+    frame_.start_xy.push_back(start_of_joint(case_, g));
+    frame_.target_xy.push_back(joints[size_t(g)].head<2>());
+  }
+  frame_.options = case_.schedule;
+  frame_.shortest_stroke = case_.optimise.shortest_stroke;
+  frame_.longest_sequence = case_.optimise.longest_sequence;
+}
+
+const ReachResult& DrapeProblem::reach() const {
+  return reach_->get([this] { return solve_reach(reach_problem_, kReachStarts, case_.optimise.seed); });
+}
+
+const Model& DrapeProblem::model(const std::string& fidelity) const {
+  return models_.at(fidelity)->get([&] { return Model(scene_of(case_, case_.fidelities.at(fidelity))); });
+}
+
+Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, int frames,
+                        RunPart part) const {
+  const Model& model = this->model(fidelity);
+  Drape drape;
+  RunRequest request;
+  request.schedule = &schedule;
+  request.frames = frames;
+  request.from = part.from;
+  request.pause = part.pause;
+  if (frames > 0) request.observe = [&drape](const Snapshot& frame) { drape.frames.push_back(frame); };
+  drape.run = simulate(model, request);
+  drape.separation = separations(drape.run.final, *case_.mold, case_.material.thickness);
+  if (drape.run.report.status != RunStatus::done) {
+    drape.score = failed_score(drape.run.report.message);
+    return drape;
+  }
+  // A gap is never negative: a ply that ended inside the mold would look perfectly draped.
+  if (drape.run.report.largest_penetration > case_.material.thickness) {
+    drape.score = failed_score("the ply came " + std::to_string(1e3 * drape.run.report.largest_penetration) +
+                               " mm inside the mold: more than its thickness");
+    return drape;
+  }
+  const RunRecord& record = drape.run.state.record;
+  const RunExtremes extremes{record.actuator_force, record.fibre_strain, record.fibre_compression,
+                             schedule.duration()};
+  drape.score = score_drape(model.scene().mesh, drape.run.final, *case_.mold, map_.boundary,
+                            case_.material.thickness, case_.score, extremes);
+  return drape;
+}
+
+}  // namespace drapeplan

@@ -1,0 +1,92 @@
+// A case made ready to be simulated: mapping, and one evaluation as a pure function. Models of fidelities and
+// the reach floor are made when they are first asked for.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fem/run/simulate.hpp"
+#include "planner/case/case.hpp"
+#include "planner/drape/map_result.hpp"
+#include "planner/drape/score.hpp"
+#include "planner/drape/strategy.hpp"
+#include "planner/reach/reach.hpp"
+
+namespace drapeplan {
+
+/// The fidelity at which results are claimed; every case has it.
+inline constexpr const char* kReport = "report";
+
+/// The FE scene of a case at a fidelity: sections that are absent add nothing.
+/// @throws std::invalid_argument if the scene cannot be built.
+Scene scene_of(const Case& value, const FemOptions& options);
+
+/// The reach problem of a case with grippers. @param targets  mapped places of the pads [m].
+ReachProblem reach_problem_of(const Case& value, const std::vector<Eigen::Vector3d>& targets);
+
+/// One simulated drape with its score.
+struct Drape {
+  RunResult run;
+  Score score;
+  std::vector<double> separation;  ///< per node [m]
+  std::vector<Snapshot> frames;    ///< equally spaced in time, as many as were asked for
+};
+
+/// A part of a run: from a saved state, and up to a pause [s, schedule's clock]; see RunRequest.
+struct RunPart {
+  const State* from = nullptr;
+  double pause = 0;
+};
+
+/// Shared by all threads: whoever asks first for a model or the reach floor makes it, the others wait for it.
+class DrapeProblem {
+ public:
+  /// Maps the ply; where the schedule aims at reachable places, also solves the reach problem.
+  /// @param value  needs mold, mapping and grippers.
+  /// @throws std::domain_error if the ply cannot be mapped, or not be reached where the schedule needs it.
+  explicit DrapeProblem(Case value);
+
+  [[nodiscard]] const Case& value() const { return case_; }
+  [[nodiscard]] const MapResult& mapping() const { return map_; }
+  [[nodiscard]] const ReachProblem& reach_problem() const { return reach_problem_; }
+  [[nodiscard]] const ReachResult& reach() const;
+  [[nodiscard]] const SequenceFrame& frame() const { return frame_; }
+  /// @throws std::out_of_range if the case has no such fidelity, std::invalid_argument if its model cannot be
+  /// built.
+  [[nodiscard]] const Model& model(const std::string& fidelity) const;
+
+  /// Runs a schedule. Once the fidelity's model is built it never throws for a schedule that fits the rig: a
+  /// failed run is an invalid score.
+  [[nodiscard]] Drape run(const Schedule& schedule, const std::string& fidelity, int frames = 0,
+                          RunPart part = {}) const;
+
+ private:
+  /// Made by whoever asks first.
+  template <class T>
+  class Lazy {
+   public:
+    template <class Make>
+    const T& get(const Make& make) {
+      const std::scoped_lock lock(mutex_);
+      if (!value_) value_ = std::make_unique<const T>(make());
+      return *value_;
+    }
+
+   private:
+    std::mutex mutex_;
+    std::unique_ptr<const T> value_;
+  };
+
+  Case case_;
+  MapResult map_;
+  ReachProblem reach_problem_;
+  SequenceFrame frame_;
+  std::unique_ptr<Lazy<ReachResult>> reach_;
+  std::map<std::string, std::unique_ptr<Lazy<Model>>> models_;
+};
+
+}  // namespace drapeplan

@@ -1,0 +1,107 @@
+// Names of what scores and reports hold, stated once for the evaluation log and for result files.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "fem/core/report.hpp"
+#include "planner/drape/score.hpp"
+
+namespace drapeplan {
+
+/// Calls visit(key, field) for every number of a score: one list for writing and reading.
+template <class ScoreType, class Visit>
+void for_each_part(ScoreType& s, const Visit& visit) {
+  visit("max_separation", s.max_separation);
+  visit("rms_separation", s.rms_separation);
+  visit("wrinkled_area", s.wrinkled_area);
+  visit("max_boundary_offset", s.max_boundary_offset);
+  visit("rms_boundary_offset", s.rms_boundary_offset);
+  visit("max_shear_deg", s.max_shear_deg);
+  visit("max_fibre_strain", s.max_fibre_strain);
+  visit("max_fibre_compression", s.max_fibre_compression);
+  visit("max_actuator_force", s.max_actuator_force);
+  visit("duration", s.duration);
+  visit("objective", s.objective);
+}
+
+/// Calls visit(key, field, part) for every energy of a report. `part` points to the member of ReportParts
+/// that says whether the scene has any of it; null: every scene does.
+template <class ReportType, class Visit>
+void for_each_energy(ReportType& r, const Visit& visit) {
+  using Part = bool ReportParts::*;
+  auto& e = r.energy;
+  visit("kinetic", e.kinetic, Part(nullptr));
+  visit("internal", e.internal, Part(nullptr));
+  visit("external", e.external, &ReportParts::external);
+  visit("friction", e.friction, &ReportParts::friction);
+  visit("contact", e.contact, &ReportParts::contact);
+  visit("damping", e.damping, &ReportParts::damping);
+  visit("constraint", e.constraint, &ReportParts::constraint);
+  visit("hourglass", e.hourglass, Part(nullptr));
+  visit("largest", e.largest, Part(nullptr));
+  visit("balance_error", e.balance_error, Part(nullptr));
+}
+
+/// The same for the other doubles of a report.
+template <class ReportType, class Visit>
+void for_each_figure(ReportType& r, const Visit& visit) {
+  using Part = bool ReportParts::*;
+  visit("dt", r.dt, Part(nullptr));
+  visit("simulated_time", r.simulated_time, Part(nullptr));
+  visit("wall_seconds", r.wall_seconds, Part(nullptr));
+  visit("element_updates_per_second", r.element_updates_per_second, Part(nullptr));
+  visit("largest_kinetic_ratio", r.largest_kinetic_ratio, Part(nullptr));
+  visit("largest_hourglass_share", r.largest_hourglass_share, Part(nullptr));
+  visit("largest_penetration", r.largest_penetration, &ReportParts::contact);
+  visit("largest_link_error", r.largest_link_error, &ReportParts::links);
+}
+
+/// The words of RunStatus, in its order.
+inline constexpr std::array<const char*, 3> kRunStatus{"done", "diverged", "paused"};
+
+/// JSON has no infinity and no NaN: null stands for every number that is not finite.
+inline nlohmann::json finite(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+
+inline std::string hex(std::uint64_t value) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+inline nlohmann::json score_json(const Score& score) {
+  nlohmann::json out;
+  for_each_part(score, [&](const char* key, double value) {
+    out[key] = score.valid ? finite(value) : nlohmann::json(nullptr);  // a failed run has no parts
+  });
+  out["objective"] = finite(score.objective);
+  out["valid"] = score.valid;
+  if (!score.valid) out["reason"] = score.reason;
+  return out;
+}
+
+/// Without the figures of what the scene does not have.
+inline nlohmann::json report_json(const RunReport& report) {
+  nlohmann::json out, energy;
+  const auto write_to = [&report](nlohmann::json& object) {
+    return [&](const char* key, double value, bool ReportParts::*part) {
+      if (part == nullptr || report.parts.*part) object[key] = finite(value);
+    };
+  };
+  for_each_figure(report, write_to(out));
+  for_each_energy(report, write_to(energy));
+  out["energy"] = energy;
+  out["status"] = kRunStatus[size_t(report.status)];
+  out["message"] = report.message;
+  out["steps"] = report.steps;
+  out["state_hash"] = hex(report.state_hash);
+  return out;
+}
+
+}  // namespace drapeplan

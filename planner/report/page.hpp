@@ -1,0 +1,44 @@
+// The report of a plan run as one self-contained HTML page.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "planner/drape/score.hpp"
+
+namespace drapeplan {
+
+/// One line of the table of scores. A part that is not known is NaN in `score` and shown as a dash.
+struct ReportRow {
+  std::string name;  ///< "wave"
+  Score score;
+  bool reference = false;  ///< published or measured elsewhere: shown, not compared
+};
+
+/// A picture with its caption. `svg` comes from picture.hpp or charts.hpp and is embedded as it is.
+struct ReportFigure {
+  std::string caption;
+  std::string svg;
+};
+
+/// All texts are plain text; they are escaped when written. What is empty is left out.
+struct PlanReport {
+  std::string title;            ///< name of the case
+  std::string description;      ///< what is draped, one or two sentences
+  std::string verdict;          ///< what came out, one sentence
+  std::string reach;            ///< what the rig can reach at all, one or two sentences
+  std::vector<ReportRow> rows;  ///< baselines first, the optimum last
+  std::vector<ReportFigure> figures;
+  std::vector<std::string> notes;                          ///< assumptions and limits the reader must know
+  std::vector<std::pair<std::string, std::string>> facts;  ///< name, value: evaluations, wall time, hash, ...
+  std::vector<std::pair<std::string, std::string>> settings;  ///< path in the case file, value
+  std::vector<std::pair<std::string, std::string>>
+      files;  ///< name, what it holds; linked relative to the report
+};
+
+/// The page: no scripts, nothing loaded from elsewhere. In each column of scores the best valid row that is
+/// not a reference stands out.
+std::string html_report(const PlanReport& report);
+
+}  // namespace drapeplan

@@ -1,0 +1,197 @@
+#include "planner/report/run_files.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "planner/base/text.hpp"
+#include "planner/drape/result_fields.hpp"
+#include "planner/drape/schedule_file.hpp"
+#include "planner/drape/scoring.hpp"
+#include "planner/report/charts.hpp"
+#include "planner/report/page.hpp"
+#include "planner/report/vtu.hpp"
+
+namespace drapeplan {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[400];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+std::string short_score(const Score& score) {
+  if (!score.valid) return score.reason;
+  return format("gap %.1f mm, boundary %.1f mm, objective %.2f", 1e3 * score.max_separation,
+                1e3 * score.max_boundary_offset, score.objective);
+}
+
+/// Published rows first, then the baselines, then the optimum.
+std::vector<ReportRow> rows_of(const DrapeProblem& problem, const PlanResult& result) {
+  std::vector<ReportRow> rows;
+  for (const Reference& reference : problem.value().references) {
+    Score score;
+    for_each_part(score, [](const char*, double& part) { part = kNaN; });
+    score.valid = true;
+    score.max_separation = reference.max_separation;
+    score.max_boundary_offset = reference.max_boundary_offset;
+    rows.push_back({.name = reference.name, .score = score, .reference = true});
+  }
+  rows.push_back({.name = "uniform", .score = result.uniform.score, .reference = false});
+  rows.push_back({.name = "wave", .score = result.wave.score, .reference = false});
+  rows.push_back({.name = "optimised", .score = result.best.score, .reference = false});
+  return rows;
+}
+
+/// Best objective at each fidelity against the number of evaluations.
+Chart history_chart(const StagedResult& search) {
+  Chart chart{.title = "Search", .x_label = "evaluation", .y_label = "objective", .series = {}};
+  std::map<std::string, size_t> place;
+  for (const HistoryEntry& entry : search.history) {
+    const auto [found, fresh] = place.try_emplace(entry.fidelity, chart.series.size());
+    if (fresh) {
+      chart.series.push_back({.name = entry.fidelity + ": each", .points = {}, .dots = true, .steps = false});
+      chart.series.push_back(
+          {.name = entry.fidelity + ": best so far", .points = {}, .dots = false, .steps = true});
+    }
+    const double objective = entry.valid ? entry.objective : kNaN;
+    chart.series[found->second].points.emplace_back(entry.number, objective);
+    chart.series[found->second + 1].points.emplace_back(entry.number, entry.best_so_far);
+  }
+  return chart;
+}
+
+std::vector<std::string> notes_of(const DrapeProblem& problem) {
+  std::vector<std::string> notes;
+  const MaterialNotes& material = problem.value().material_notes;
+  for (const std::string* source :
+       {&material.source, &material.tension_source, &material.compression_source, &material.shear_source}) {
+    if (!source->empty()) notes.push_back(*source);
+  }
+  return notes;
+}
+
+}  // namespace
+
+std::string terms_line(const Model& model) {
+  std::string line;
+  for (const std::string& name : model.term_names()) line += (line.empty() ? "[" : " [") + name + "]";
+  return line;
+}
+
+DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
+                       const std::string& title) {
+  const Mesh& mesh = problem.model(fidelity).scene().mesh;
+  const double thickness = problem.value().material.thickness;
+  DrapePanel panel{.title = title,
+                   .subtitle = short_score(drape.score),
+                   .mesh = mesh,
+                   .position = drape.run.final.position,
+                   .separation = drape.separation,
+                   .boundary = problem.mapping().boundary,
+                   .pads = drape.run.final.pad,
+                   .pad_radius = problem.value().grippers->pad_radius,
+                   .largest_offset = std::nullopt};
+  if (drape.score.valid) {
+    const BoundaryOffset offset =
+        boundary_offset(ply_edge(mesh, drape.run.final, thickness), problem.mapping().boundary);
+    panel.largest_offset = {offset.on_edge, offset.on_boundary};
+  }
+  return panel;
+}
+
+void write_frames(const std::filesystem::path& folder, const std::string& name, const Mesh& mesh,
+                  const std::vector<Snapshot>& frames, const Mold* mold, double thickness) {
+  std::vector<PvdEntry> entries;
+  for (size_t k = 0; k < frames.size(); ++k) {
+    const std::string file = format("%s_%03zu.vtu", name.c_str(), k);
+    const std::vector<double> gaps = mold ? separations(frames[k], *mold, thickness) : std::vector<double>{};
+    write_vtu(folder / file, mesh, frames[k], gaps);
+    entries.push_back({frames[k].time, file});
+  }
+  write_pvd(folder / (name + ".pvd"), entries);
+}
+
+void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result) {
+  const RigOptions& rig = *problem.value().grippers;
+  const StagedResult& search = result.search;
+  write_schedule(folder / "schedule.json", search.best.schedule, rig);
+  write_schedule_csv(folder / "schedule.csv", search.best.schedule, rig);
+  write_schedule(folder / "schedule_uniform.json", search.uniform.schedule, rig);
+  write_schedule(folder / "schedule_wave.json", search.wave.schedule, rig);
+
+  const Mesh& mesh = problem.model(kReport).scene().mesh;
+  const std::array<std::pair<const char*, const Drape*>, 3> drapes{
+      {{"uniform", &result.uniform}, {"wave", &result.wave}, {"optimised", &result.best}}};
+  std::vector<DrapePanel> panels;
+  for (const auto& [name, drape] : drapes) {
+    write_frames(folder, name, mesh, drape->frames, &*problem.value().mold,
+                 problem.value().material.thickness);
+    panels.push_back(drape_panel(problem, *drape, kReport, name));
+  }
+  write_mold_vtu(folder / "mold.vtu", *problem.value().mold);
+
+  PlanReport report;
+  report.title = problem.value().name;
+  report.description = problem.value().description;
+  report.verdict = search.message;
+  report.reach = explain_reach(problem.reach_problem(), problem.reach());
+  report.rows = rows_of(problem, result);
+  report.notes = notes_of(problem);
+  const std::string drape = drape_picture(panels, problem.value().mold->extent());
+  const std::string sequence = schedule_picture(search.best.schedule, rig, "Optimised sequence");
+  write_text(folder / "drape.svg", drape);
+  write_text(folder / "sequence.svg", sequence);
+  report.figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", drape},
+                    {"Who goes down when", sequence},
+                    {"Heights of the joints over time",
+                     line_chart(height_chart(search.best.schedule, rig, "Optimised sequence"))},
+                    {"Best objective against evaluations", line_chart(history_chart(search))}};
+  report.facts = {{"evaluations", std::to_string(search.evaluations)},
+                  {"failed evaluations", std::to_string(search.failed_evaluations)},
+                  {"wall time", format("%.0f s", result.wall_seconds)},
+                  {"best candidate", search.best.name},
+                  {"state hash of the best drape", hex(result.best.run.report.state_hash)},
+                  {"energy balance error",
+                   format("%.1e of the largest energy", result.best.run.report.energy.balance_error)}};
+  report.files = {{"schedule.json", "the optimised sequence, knots"},
+                  {"schedule.csv", "the same, sampled for a robot controller"},
+                  {"result.json", "all results"},
+                  {"resolved.json", "the complete case with all defaults"},
+                  {"evaluations.jsonl", "every evaluation"},
+                  {"optimised.pvd", "the optimised drape over time, for ParaView"},
+                  {"mold.vtu", "the mold, for ParaView"}};
+  write_text(folder / "report.html", html_report(report));
+}
+
+std::string comparison_table(const DrapeProblem& problem, const PlanResult& result) {
+  std::string text = format("%-28s %10s %10s %10s %10s %10s %9s\n", "", "gap max", "gap rms", "bound. max",
+                            "bound. rms", "wrinkled", "objective");
+  text += format("%-28s %10s %10s %10s %10s %10s %9s\n", "", "[mm]", "[mm]", "[mm]", "[mm]", "[cm^2]", "[-]");
+  const auto cell = [](double value, const char* pattern, int width) {
+    return std::isfinite(value) ? format(pattern, width, value) : format("%*s", width, "-");
+  };
+  for (const ReportRow& row : rows_of(problem, result)) {
+    const Score& s = row.score;
+    text += format("%-28s", row.name.substr(0, 28).c_str());
+    if (!s.valid) {
+      text += "  " + s.reason + "\n";
+      continue;
+    }
+    for (const double part :
+         {s.max_separation, s.rms_separation, s.max_boundary_offset, s.rms_boundary_offset}) {
+      text += " " + cell(1e3 * part, "%*.2f", 10);
+    }
+    text += " " + cell(1e4 * s.wrinkled_area, "%*.1f", 10) + " " + cell(s.objective, "%*.2f", 9) + "\n";
+  }
+  return text;
+}
+
+}  // namespace drapeplan

@@ -1,0 +1,31 @@
+// Files of simulated drapes and plans in a run directory.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "planner/report/picture.hpp"
+#include "planner/search/plan.hpp"
+
+namespace drapeplan {
+
+/// All terms of a model in one line: "[shell, 3 section points] [gravity]".
+std::string terms_line(const Model& model);
+
+/// The panel of one drape for `drape_picture`.
+DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
+                       const std::string& title);
+
+/// Writes `frames` as NAME_000.vtu ... with the collection NAME.pvd.
+void write_frames(const std::filesystem::path& folder, const std::string& name, const Mesh& mesh,
+                  const std::vector<Snapshot>& frames, const Mold* mold, double thickness);
+
+/// Writes all files of a plan but result.json and resolved.json: schedule.json and .csv of the best,
+/// schedules of the baselines, contour picture, charts, VTU and PVD, report.html.
+void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result);
+
+/// The comparison as text: one row per reference and drape.
+std::string comparison_table(const DrapeProblem& problem, const PlanResult& result);
+
+}  // namespace drapeplan

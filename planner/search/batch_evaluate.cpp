@@ -1,0 +1,78 @@
+#include "planner/search/batch_evaluate.hpp"
+
+#include <cmath>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "planner/base/parallel.hpp"
+
+namespace drapeplan {
+namespace {
+
+Outcome failed(Outcome outcome, const std::string& reason) {
+  outcome.score.valid = false;
+  outcome.score.reason = reason;
+  outcome.score.objective = kFailureObjective;
+  return outcome;
+}
+
+Outcome run_safely(const Evaluate& evaluate, const Schedule& schedule, const std::string& fidelity) {
+  try {
+    Outcome outcome = evaluate(schedule, fidelity);
+    if (outcome.score.valid && !std::isfinite(outcome.score.objective)) {
+      return failed(std::move(outcome), "the objective is not finite");
+    }
+    return outcome;
+  } catch (const std::exception& error) {
+    return failed({}, error.what());
+  } catch (...) {
+    return failed({}, "an exception of unknown type");
+  }
+}
+
+/// Per schedule the index of the first equal one: equal schedules of one batch must not race for who runs.
+std::vector<size_t> first_occurrences(const std::vector<Schedule>& schedules) {
+  std::map<std::uint64_t, size_t> seen;
+  std::vector<size_t> first;
+  for (size_t k = 0; k < schedules.size(); ++k) {
+    first.push_back(seen.try_emplace(schedule_hash(schedules[k]), k).first->second);
+  }
+  return first;
+}
+
+}  // namespace
+
+BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int threads) {
+  return [evaluate = std::move(evaluate), &log, threads](
+             const std::vector<Schedule>& schedules, const std::string& fidelity, const std::string& stage) {
+    const std::vector<size_t> first = first_occurrences(schedules);
+    std::vector<Outcome> outcomes(schedules.size());
+    std::vector<char> finished(schedules.size(), 0);
+    size_t written = 0;
+    std::mutex order;
+    const auto one = [&](int i) {
+      const auto k = size_t(i);
+      if (first[k] == k) {
+        const auto run = [&] { return run_safely(evaluate, schedules[k], fidelity); };
+        outcomes[k] = log.evaluate_once(schedules[k], fidelity, run);
+      }
+      const std::scoped_lock lock(order);
+      finished[k] = 1;
+      for (; written < schedules.size() && finished[written]; ++written) {
+        if (first[written] != written || outcomes[written].cached) continue;
+        log.write(schedules[written], fidelity, stage, outcomes[written]);
+      }
+    };
+    parallel_for(int(schedules.size()), one, threads);
+    for (size_t k = 0; k < schedules.size(); ++k) {
+      if (first[k] == k) continue;
+      outcomes[k] = outcomes[first[k]];
+      outcomes[k].cached = true;
+    }
+    return outcomes;
+  };
+}
+
+}  // namespace drapeplan

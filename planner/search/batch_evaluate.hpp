@@ -1,0 +1,30 @@
+// From "evaluate one schedule" to "evaluate a batch": parallel, cached, logged, never throwing for a bad
+// candidate.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "planner/search/evaluation_log.hpp"
+
+namespace drapeplan {
+
+/// One simulation and its score. May throw: that is a failed outcome. Safe to call concurrently.
+using Evaluate = std::function<Outcome(const Schedule& schedule, const std::string& fidelity)>;
+
+/// All that an optimiser sees. Outcomes in the order of the schedules. Safe to call concurrently.
+using BatchEvaluate = std::function<std::vector<Outcome>(
+    const std::vector<Schedule>& schedules, const std::string& fidelity, const std::string& stage)>;
+
+/// Objective of an outcome whose evaluation threw, so without any score.
+inline constexpr double kFailureObjective = 1e6;
+
+/// Wraps `evaluate`: repeated schedules are served by the log, exceptions and non-finite objectives become
+/// failed outcomes, new outcomes are written to the log. Within a batch lines are written in the order of the
+/// batch, each as soon as all before it are finished: a killed run loses at most the few that overtook.
+/// Batches of concurrent callers interleave in the order of their completion.
+/// @param log  outlives the returned function.
+BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int threads = 0);
+
+}  // namespace drapeplan

@@ -1,0 +1,84 @@
+// The log of all evaluations: history, cache and checkpoint in one file, one JSON line each.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fem/core/report.hpp"
+#include "fem/rig/schedule.hpp"
+#include "planner/drape/score.hpp"
+
+namespace drapeplan {
+
+/// What one evaluation gave.
+struct Outcome {
+  Score score;  ///< valid == false: failed, for the reason given there
+  RunReport report;
+  double wall_seconds = 0;  ///< [s]
+  bool cached = false;      ///< served without a run
+};
+
+/// One line of the log.
+struct Evaluation {
+  int number = 0;  ///< running, from 1, in the order of the file
+  std::string stage;
+  std::string fidelity;
+  std::uint64_t schedule_hash = 0;
+  Outcome outcome;
+  double best_so_far =
+      0;  ///< lowest valid objective at this fidelity up to this line; infinite if there is none
+};
+
+/// 64-bit FNV-1a over the sizes and the bits of all doubles (-0 counts as 0).
+std::uint64_t schedule_hash(const Schedule& schedule);
+
+/// Append-only file of JSON lines. The first names the format and the case; each other one is an evaluation,
+/// flushed when written. Thread-safe. Resume = open the same file again: known (schedule, fidelity) pairs are
+/// then served from it. Of a report only what the planner shows is kept (status, steps, times, energies,
+/// hash).
+class EvaluationLog {
+ public:
+  /// In memory only.
+  EvaluationLog() = default;
+  /// Opens or creates `path`. A torn last line (a run that was killed) is cut off. Throws std::runtime_error,
+  /// and leaves the file as it was, if it belongs to another case, is of another format or has a broken line
+  /// inside.
+  EvaluationLog(const std::string& path, std::uint64_t case_hash);
+
+  /// The outcome of this schedule at this fidelity: the known one (cached = true), or that of `run`, which is
+  /// called once even if several threads ask for it at the same time. `run` must not throw.
+  Outcome evaluate_once(const Schedule& schedule, const std::string& fidelity,
+                        const std::function<Outcome()>& run);
+  /// Appends a line; gives it its number and best so far. Order is the caller's, see batch_evaluate.hpp.
+  void write(const Schedule& schedule, const std::string& fidelity, const std::string& stage,
+             const Outcome& outcome);
+
+  /// All lines so far, those read from the file included.
+  [[nodiscard]] std::vector<Evaluation> evaluations() const;
+
+ private:
+  using Key = std::pair<std::uint64_t, std::string>;  // schedule hash, fidelity
+  void read(const std::string& path, std::uint64_t case_hash);
+  void remember(Evaluation evaluation);
+
+  mutable std::mutex mutex_;
+  std::condition_variable finished_;
+  std::map<Key, Outcome> known_;
+  std::set<Key> running_;
+  std::vector<Evaluation> lines_;
+  std::map<std::string, double> best_;  // per fidelity
+  std::ofstream file_;
+};
+
+/// The evaluations of a log file, for reports; same errors as EvaluationLog except that any case is accepted.
+std::vector<Evaluation> read_evaluations(const std::string& path);
+
+}  // namespace drapeplan

@@ -1,0 +1,152 @@
+// Outcomes of stress scenes as JSON, for programs and for people.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "planner/drape/result_fields.hpp"
+#include "planner/stress/stress.hpp"
+
+namespace drapeplan {
+namespace {
+
+using nlohmann::json;
+
+json maybe(const std::optional<double>& value) {
+  return value ? finite(*value) : json(nullptr);
+}
+
+std::optional<double> true_over_estimated(const StressOutcome& o) {
+  if (!o.true_step || !o.estimated_step) return std::nullopt;
+  const double ratio = *o.true_step / *o.estimated_step;
+  return std::isfinite(ratio) ? std::optional(ratio) : std::nullopt;
+}
+
+std::string cell(const std::optional<double>& value, const char* format) {
+  if (!value || !std::isfinite(*value)) return "";
+  char text[40];
+  std::snprintf(text, sizeof text, format, *value);
+  return text;
+}
+
+/// A field of a CSV table, quoted.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += (c == '"' ? "\"\"" : std::string(1, c));
+  return out + "\"";
+}
+
+/// A cell of a Markdown table.
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += (c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c));
+  return out;
+}
+
+template <class Field>
+std::optional<double> of_report(const StressOutcome& o, const Field& field) {
+  return o.report ? std::optional<double>(field(*o.report)) : std::nullopt;
+}
+
+std::optional<double> balance_of(const StressOutcome& o) {
+  return of_report(o, [](const RunReport& r) { return r.energy.balance_error; });
+}
+std::optional<double> kinetic_ratio_of(const StressOutcome& o) {
+  return of_report(o, [](const RunReport& r) { return r.largest_kinetic_ratio; });
+}
+
+json outcome_json(const StressOutcome& o) {
+  json checks = json::array();
+  for (const StressCheck& c : o.checks) {
+    checks.push_back({{"what", c.what},
+                      {"value", finite(c.value)},
+                      {"least", finite(c.least)},
+                      {"most", finite(c.most)},
+                      {"holds", c.holds()}});
+  }
+  json entry = {{"name", o.name},
+                {"group", o.group},
+                {"verdict", verdict_name(o.verdict)},
+                {"reason", o.reason},
+                {"elements", o.elements},
+                {"balance_error", maybe(balance_of(o))},
+                {"kinetic_ratio", maybe(kinetic_ratio_of(o))},
+                {"drift", maybe(o.drift)},
+                {"estimated_step", maybe(o.estimated_step)},
+                {"true_step", maybe(o.true_step)},
+                {"true_over_estimated_step", maybe(true_over_estimated(o))},
+                {"limit_over_estimated_step", maybe(o.limit_over_estimate)},
+                {"wall_seconds", o.wall_seconds},
+                {"checks", std::move(checks)}};
+  entry["steps"] = o.report ? json(o.report->steps) : json(nullptr);
+  entry["dt"] = o.report ? finite(o.report->dt) : json(nullptr);
+  return entry;
+}
+
+size_t count(const std::vector<StressOutcome>& outcomes, Verdict verdict) {
+  return size_t(std::count_if(outcomes.begin(), outcomes.end(),
+                              [verdict](const StressOutcome& o) { return o.verdict == verdict; }));
+}
+
+}  // namespace
+
+json stress_json(const std::vector<StressOutcome>& outcomes) {
+  json scenes = json::array(), failures = json::array(), verdicts = json::object();
+  for (const StressOutcome& o : outcomes) {
+    scenes.push_back(outcome_json(o));
+    if (o.verdict == Verdict::wrong) failures.push_back(o.group + ": " + o.name);
+  }
+  for (const Verdict v : {Verdict::right, Verdict::refused, Verdict::stopped, Verdict::wrong})
+    verdicts[verdict_name(v)] = count(outcomes, v);
+  return {
+      {"scenes", std::move(scenes)}, {"failures", std::move(failures)}, {"verdicts", std::move(verdicts)}};
+}
+
+std::string stress_csv(const std::vector<StressOutcome>& outcomes) {
+  std::string text =
+      "group,scene,verdict,balance_error,kinetic_ratio,drift_m,true_over_estimated_step,"
+      "limit_over_estimated_step,steps,dt_s,elements,reason\n";
+  for (const StressOutcome& o : outcomes) {
+    text += quoted(o.group) + "," + quoted(o.name) + "," + verdict_name(o.verdict) + "," +
+            cell(balance_of(o), "%.2e") + "," + cell(kinetic_ratio_of(o), "%.3g") + "," +
+            cell(o.drift, "%.2e") + "," + cell(true_over_estimated(o), "%.4f") + "," +
+            cell(o.limit_over_estimate, "%.3f") + "," + (o.report ? std::to_string(o.report->steps) : "") +
+            "," + cell(of_report(o, [](const RunReport& r) { return r.dt; }), "%.4g") + "," +
+            std::to_string(o.elements) + "," + quoted(o.reason) + "\n";
+  }
+  return text;
+}
+
+std::string stress_markdown(const std::vector<StressOutcome>& outcomes) {
+  std::string text = "# Stability of stiff and extreme scenes\n\n";
+  text += std::to_string(outcomes.size()) + " scenes: ";
+  for (const Verdict v : {Verdict::right, Verdict::refused, Verdict::stopped, Verdict::wrong}) {
+    text += std::to_string(count(outcomes, v)) + " " + verdict_name(v) + (v == Verdict::wrong ? ".\n" : ", ");
+  }
+  text +=
+      "Balance: largest error of the books over the largest energy. Kinetic: largest ratio of the ply's "
+      "kinetic "
+      "to its internal energy.\nDrift: r.m.s. motion of the nodes in the last tenth of a run that ends at "
+      "rest. "
+      "Step: true over estimated stable\nstep at the end; in brackets the step at which runs become "
+      "unstable, by "
+      "bisection, over the estimate.\n";
+  std::string group;
+  for (const StressOutcome& o : outcomes) {
+    if (o.group != group) {
+      group = o.group;
+      text += "\n## " + group +
+              "\n\n| scene | verdict | measured, or why | balance | kinetic | drift [m] | step |\n"
+              "|---|---|---|---|---|---|---|\n";
+    }
+    const std::string limit = cell(o.limit_over_estimate, " (%.2f)");
+    text += "| " + escaped(o.name) + " | " +
+            (o.verdict == Verdict::wrong ? "**wrong**" : verdict_name(o.verdict)) + " | " +
+            escaped(o.reason) + " | " + cell(balance_of(o), "%.0e") + " | " +
+            cell(kinetic_ratio_of(o), "%.2g") + " | " + cell(o.drift, "%.0e") + " | " +
+            cell(true_over_estimated(o), "%.2f") + limit + " |\n";
+  }
+  return text;
+}
+
+}  // namespace drapeplan

@@ -1,0 +1,254 @@
+// Pause, save, load, go on: the same bits; files that are not such a state are refused.
+#include "fem/run/state_file.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "fem/run/simulate.hpp"
+#include "tests/fem/run/drapes.hpp"
+
+namespace drapeplan {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of this process that goes away.
+struct ScratchFolder {
+  fs::path path = fs::path(testing::TempDir()) / ("state_file_test_" + std::to_string(::getpid()));
+  ScratchFolder() { fs::create_directories(path); }
+  ~ScratchFolder() { fs::remove_all(path); }
+};
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void write(const fs::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+Fabric rated_fabric() {
+  Fabric fabric = test::woven_fabric();
+  Curve fast = fabric.compression.slowest();
+  for (double& stress : fast.stress) stress *= 2;
+  fabric.compression.curves.push_back(fast);
+  fabric.compression.rates = {1e-15, 1e-3};
+  return fabric;
+}
+
+/// A strip that falls, clamped at one end, with rates.
+Scene strip() {
+  Scene scene;
+  scene.mesh = rectangle_mesh(0.1, 0.02, 0.01);
+  scene.fabric = rated_fabric();
+  scene.gravity = 9.81;
+  scene.damping = 22;
+  scene.rest = RestCriterion{};
+  for (size_t n = 0; n < scene.mesh.rest.size(); ++n) {
+    if (scene.mesh.rest[n].x() < -0.0499) scene.clamped.push_back(int(n));
+  }
+  return scene;
+}
+
+/// A 2x2 rig with interlinks over the corner of the seed's mold, with friction and rates; one pad lets go.
+Scene drape() {
+  Scene scene = test::corner_drape(0.02);
+  scene.fabric = rated_fabric();
+  return scene;
+}
+
+Schedule drop(const Scene& scene) {
+  Schedule schedule = test::drop(scene, {.above = 2, .touch = 4, .end = 5});
+  schedule.release = {std::nullopt, std::nullopt, std::nullopt, 4.2};
+  return schedule;
+}
+
+void expect_same(const RunResult& whole, const RunResult& parts) {
+  EXPECT_EQ(whole.report.status, RunStatus::done) << whole.report.message;
+  EXPECT_EQ(whole.report.message, parts.report.message);
+  EXPECT_EQ(whole.report.state_hash, parts.report.state_hash);
+  EXPECT_EQ(whole.report.steps, parts.report.steps);
+  EXPECT_EQ(whole.report.energy.balance_error, parts.report.energy.balance_error);
+  EXPECT_EQ(whole.report.energy.largest, parts.report.energy.largest);
+  EXPECT_EQ(whole.report.largest_kinetic_ratio, parts.report.largest_kinetic_ratio);
+  EXPECT_EQ(whole.report.largest_hourglass_share, parts.report.largest_hourglass_share);
+  const RunRecord &a = whole.state.record, &b = parts.state.record;
+  for (const auto field :
+       {&RunRecord::fibre_strain, &RunRecord::fibre_compression, &RunRecord::actuator_force,
+        &RunRecord::link_error, &RunRecord::penetration, &RunRecord::energy, &RunRecord::balance,
+        &RunRecord::hourglass_share, &RunRecord::kinetic_ratio, &RunRecord::last_motion})
+    EXPECT_EQ(a.*field, b.*field);
+}
+
+/// Runs in parts, each through a file and a model of its own.
+RunResult in_parts(const Scene& scene, RunRequest request, const std::vector<double>& pauses) {
+  const ScratchFolder folder;
+  const fs::path file = folder.path / "state";
+  std::optional<State> from;
+  for (const double pause : pauses) {
+    const Model model(scene);
+    request.from = from ? &*from : nullptr;
+    request.pause = pause;
+    const RunResult part = simulate(model, request);
+    EXPECT_EQ(part.report.status, RunStatus::paused) << part.report.message;
+    EXPECT_EQ(part.report.message, "paused, to be continued");
+    save_state(file, model, part.state);
+    StateReading reading = load_state(file, Model(scene));
+    EXPECT_TRUE(reading.value) << reading.error;
+    from = std::move(reading.value);
+    EXPECT_EQ(hash_state(*from, model.node_count()), part.report.state_hash);
+  }
+  request.from = &*from;
+  request.pause = 0;
+  return simulate(Model(scene), request);
+}
+
+TEST(Restart, GoesOnWithTheSameBitsForAFreeStripWithRates) {
+  const RunRequest request{.duration = 0.3};
+  expect_same(simulate(Model(strip()), request), in_parts(strip(), request, {0.0371, 0.1, 0.22}));
+}
+
+TEST(Restart, GoesOnWithTheSameBitsForADrapeWithRigMoldFrictionAndRelease) {
+  const Scene scene = drape();
+  const Schedule schedule = drop(scene);
+  const RunRequest request{.schedule = &schedule};
+  expect_same(simulate(Model(scene), request), in_parts(scene, request, {0.51, 3.3, 4.6}));
+}
+
+TEST(Restart, AfterACountOfStepsGoesOnWithTheSameBits) {
+  const Model model(strip());
+  const RunResult whole = simulate(model, {.duration = 0.05});
+  const RunResult first = simulate(model, {.duration = 0.05, .steps = 37});
+  EXPECT_EQ(first.report.status, RunStatus::paused);
+  EXPECT_EQ(first.state.step, 37);
+  const RunResult second = simulate(model, {.duration = 0.05, .from = &first.state, .steps = 5});
+  EXPECT_EQ(second.state.step, 42);
+  expect_same(whole, simulate(model, {.duration = 0.05, .from = &second.state}));
+}
+
+TEST(Restart, ShowsTheSameFramesOnce) {
+  std::vector<double> whole, parts;
+  RunRequest request{.duration = 0.1, .frames = 7};
+  request.observe = [&whole](const Snapshot& frame) { whole.push_back(frame.time); };
+  simulate(Model(strip()), request);
+  request.observe = [&parts](const Snapshot& frame) { parts.push_back(frame.time); };
+  in_parts(strip(), request, {0.02, 0.051});
+  EXPECT_EQ(whole.size(), 7U);
+  EXPECT_EQ(whole, parts);
+}
+
+class StateFile : public testing::Test {
+ protected:
+  StateFile() { save_state(file, model, simulate(model, {.duration = 0.1, .pause = 0.01}).state); }
+
+  void refuse(const fs::path& path, const Model& by, const std::string& reason) const {
+    const StateReading reading = load_state(path, by);
+    EXPECT_FALSE(reading.value) << reason;
+    EXPECT_NE(reading.error.find(path.string()), std::string::npos) << reading.error;
+    EXPECT_NE(reading.error.find(reason), std::string::npos) << reading.error << " has no " << reason;
+  }
+
+  ScratchFolder folder;
+  fs::path file = folder.path / "state", bad = folder.path / "bad";
+  Model model{strip()};
+};
+
+TEST_F(StateFile, IsTakenByItsModelAndLeavesNothingBesideIt) {
+  EXPECT_TRUE(load_state(file, model).value);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()), 1);
+}
+
+TEST_F(StateFile, IsRefusedWhenCutAnywhere) {
+  const std::string bytes = bytes_of(file);
+  for (size_t length = 1; length < bytes.size(); length += 1 + length / 3) {
+    write(bad, bytes.substr(0, length));
+    refuse(bad, model,
+           length < 18                        ? "is not a saved state"
+           : length < 34 || (length - 18) % 8 ? "is cut"
+                                              : "is damaged");
+  }
+  write(bad, bytes.substr(0, bytes.size() - 8));
+  refuse(bad, model, "is damaged: its checksum does not fit");
+  write(bad, bytes + "x");
+  refuse(bad, model, "is cut");
+  write(bad, bytes + "12345678");
+  refuse(bad, model, "is damaged");
+}
+
+TEST_F(StateFile, IsRefusedWithAnyBitFlipped) {
+  const std::string bytes = bytes_of(file);
+  for (size_t at = 0; at < bytes.size(); at += 1 + bytes.size() / 97) {
+    std::string flipped = bytes;
+    flipped[at] = char(flipped[at] ^ (1 << (at % 8)));
+    write(bad, flipped);
+    refuse(bad, model, at < 18 ? "is not a saved state" : "is damaged");
+  }
+}
+
+TEST_F(StateFile, IsRefusedWhenEmptyMissingOrAFolder) {
+  write(bad, "");
+  refuse(bad, model, "is not a saved state");
+  refuse(folder.path / "none", model, "cannot be read");
+  refuse(folder.path, model, "cannot be read");
+  write(bad, std::string(100, '\0'));
+  refuse(bad, model, "is not a saved state");
+}
+
+TEST_F(StateFile, IsRefusedByEveryOtherModel) {
+  const std::string reason = "was saved for another case, mesh or fidelity";
+  const auto other = [&](const auto& change) {
+    Scene scene = strip();
+    change(scene);
+    refuse(file, Model(scene), reason);
+  };
+  other([](Scene& s) { s.mesh = rectangle_mesh(0.1, 0.02, 0.009); });
+  other([](Scene& s) { s.clamped.pop_back(); });
+  other([](Scene& s) { s.gravity = 9.8; });
+  other([](Scene& s) { s.gravity.reset(); });
+  other([](Scene& s) { s.damping = 21; });
+  other([](Scene& s) { s.options.rates = false; });
+  other([](Scene& s) { s.options.section_points = 5; });
+  other([](Scene& s) { s.fabric.compression.curves.back().stress.back() *= 1.01; });
+  other([](Scene& s) { s.fabric.compression.rates.back() *= 2; });
+  other([](Scene& s) { s.fabric.rate_floor *= 2; });
+  other([](Scene& s) { s.fabric.rate_filter *= 2; });
+  other([](Scene& s) { s.fabric.transverse_shear_modulus *= 1.01; });
+  other([](Scene& s) { s.fabric.shear_measure = ShearMeasure::force; });
+  other([](Scene& s) { s.rest->speed *= 2; });
+  other([](Scene& s) { s.mold = inclined_plane(0.1), s.start_height = 1; });
+}
+
+TEST_F(StateFile, OfADrapeIsRefusedOnAnotherMoldOrByAnotherRig) {
+  const Scene scene = drape();
+  const Schedule schedule = drop(scene);
+  const Model first(scene);
+  save_state(file, first, simulate(first, {.schedule = &schedule, .pause = 0.1}).state);
+  ASSERT_TRUE(load_state(file, first).value);
+  const auto other = [&](const auto& change) {
+    Scene changed = scene;
+    change(changed);
+    refuse(file, Model(changed), "was saved for another case");
+  };
+  other([](Scene& s) { s.mold = inclined_plane(0.3); });
+  other([](Scene& s) { s.friction = 1.4; });
+  other([](Scene& s) { s.rig->fixed = {2, 2}; });
+  other([](Scene& s) { s.rig->actuator_force_limit = 40; });
+  other([](Scene& s) { s.position.x() += 0.001; });
+}
+
+TEST_F(StateFile, ThatCannotBeWrittenIsNamed) {
+  const fs::path place = folder.path / "none" / "state";
+  try {
+    save_state(place, model, model.flat_state(0));
+    ADD_FAILURE() << "written";
+  } catch (const std::runtime_error& fault) {
+    EXPECT_NE(std::string(fault.what()).find(place.string()), std::string::npos) << fault.what();
+  }
+}
+
+}  // namespace
+}  // namespace drapeplan

@@ -1,0 +1,233 @@
+#include "planner/drape/schedule_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "planner/base/text.hpp"
+
+namespace drapeplan {
+namespace {
+
+/// A file of its own for each test, removed at its end.
+class ScheduleFile : public testing::Test {
+ protected:
+  ScheduleFile() : file_(std::filesystem::temp_directory_path() / ("drapeplan_" + name() + ".json")) {
+    rig_.columns = 2;
+    rig_.rows = 1;
+    rig_.spacing = 0.1;
+  }
+  ~ScheduleFile() override { std::filesystem::remove(file_); }
+
+  static std::string name() { return testing::UnitTest::GetInstance()->current_test_info()->name(); }
+
+  /// The errors of a file with this content, one "path: message" per line.
+  std::string errors_of(const std::string& content) {
+    write_text(file_, content);
+    std::string text;
+    for (const InputError& error : read_schedule(file_, rig_).errors) {
+      EXPECT_EQ(error.file, file_.string());
+      text += error.path + ": " + error.message + "\n";
+    }
+    return text;
+  }
+
+  std::filesystem::path file_;
+  RigOptions rig_;
+};
+
+std::string with_grippers(const std::string& grippers) {
+  return "{\"format\": \"drapeplan-schedule 1\", \"blend_time\": 0.1, \"grippers\": [" + grippers + "]}";
+}
+
+const std::string kFirst = R"({"gripper": [1, 1], "knots": [{"time": 0, "z": 1}]})";
+const std::string kSecond = R"({"gripper": [2, 1], "knots": [{"time": 0, "z": 1}, {"time": 2.5, "z": 0.5}]})";
+
+TEST_F(ScheduleFile, RoundTripKeepsEveryBit) {
+  const double tiny = std::numeric_limits<double>::denorm_min(), huge = std::numeric_limits<double>::max();
+  const Schedule schedule{
+      {{{0, 0.1 + 0.2}, {1.0 / 3, -0.0}, {5, 1e-300}}, {{0, tiny}, {0.7, huge}, {1e22, -2.0 / 3}}}, 0.1};
+  write_schedule(file_, schedule, rig_);
+  const ScheduleReading reading = read_schedule(file_, rig_);
+  ASSERT_TRUE(reading.errors.empty()) << reading.errors.front().message;
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  EXPECT_EQ(bits(reading.value.blend_time), bits(schedule.blend_time));
+  ASSERT_EQ(reading.value.paths.size(), schedule.paths.size());
+  for (size_t g = 0; g < schedule.paths.size(); ++g) {
+    ASSERT_EQ(reading.value.paths[g].size(), schedule.paths[g].size());
+    for (size_t k = 0; k < schedule.paths[g].size(); ++k) {
+      EXPECT_EQ(bits(reading.value.paths[g][k].time), bits(schedule.paths[g][k].time));
+      EXPECT_EQ(bits(reading.value.paths[g][k].z), bits(schedule.paths[g][k].z));
+    }
+  }
+}
+
+TEST_F(ScheduleFile, GrippersMayStandInAnyOrder) {
+  EXPECT_EQ(errors_of(with_grippers(kSecond + "," + kFirst)), "");
+  EXPECT_EQ(read_schedule(file_, rig_).value.paths[1].back().time, 2.5);
+}
+
+TEST_F(ScheduleFile, MissingAndDoubledGrippersAreNamed) {
+  EXPECT_EQ(errors_of(with_grippers(kSecond)), "/grippers: no path for gripper [1, 1]\n");
+  EXPECT_EQ(errors_of(with_grippers(kSecond + "," + kSecond)),
+            "/grippers/1/gripper: [2,1]: this gripper has a path already\n"
+            "/grippers: no path for gripper [1, 1]\n");
+}
+
+TEST_F(ScheduleFile, GripperThatTheRigDoesNotHaveIsRefused) {
+  for (const std::string name :
+       {"[3, 1]", "[0, 1]", "[1]", "[1.5, 1]", "\"1,1\"", "[99999999999999999999, 1]"}) {
+    const std::string other = R"({"gripper": )" + name + R"(, "knots": [{"time": 0, "z": 1}]})";
+    const std::string errors = errors_of(with_grippers(kFirst + "," + kSecond + "," + other));
+    EXPECT_NE(errors.find("/grippers/2/gripper: "), std::string::npos) << name << "\n" << errors;
+    EXPECT_NE(errors.find("expected [i, j] from [1, 1] to [2, 1]"), std::string::npos) << errors;
+  }
+}
+
+TEST_F(ScheduleFile, TimesThatDoNotIncreaseFromZeroAreRefused) {
+  const std::string late = R"({"gripper": [1, 1], "knots": [{"time": 0.5, "z": 1}]})";
+  EXPECT_EQ(errors_of(with_grippers(late + "," + kSecond)),
+            "/grippers/0/knots/0/time: 0.5: the first knot is at time 0\n");
+  const std::string back =
+      R"({"gripper": [1, 1], "knots": [{"time": 0, "z": 1}, {"time": 2, "z": 1}, {"time": 2, "z": 0}]})";
+  EXPECT_EQ(errors_of(with_grippers(back + "," + kSecond)),
+            "/grippers/0/knots/2/time: 2: times must increase; the knot before is at 2\n");
+}
+
+TEST_F(ScheduleFile, AllErrorsComeAtOnce) {
+  const std::string bad =
+      R"({"gripper": [1, 1], "knots": [{"time": 0, "z": "low"}, {"time": 1, "hight": 0}]})";
+  const std::string errors = errors_of(with_grippers(bad + ", 7"));
+  EXPECT_EQ(errors,
+            "/grippers/0/knots/0/z: \"low\": expected a number\n"
+            "/grippers/0/knots/1/hight: unknown key; expected one of: time, z\n"
+            "/grippers/0/knots/1/z: missing\n"
+            "/grippers/1: expected an object, got number\n"
+            "/grippers: no path for gripper [2, 1]\n");
+}
+
+TEST_F(ScheduleFile, ForeignFilesAreRefused) {
+  EXPECT_NE(errors_of("{}").find("/format: missing"), std::string::npos);
+  EXPECT_NE(
+      errors_of(R"({"format": "drapeplan-schedule 2"})").find("/format: \"drapeplan-schedule 2\"; expected"),
+      std::string::npos);
+  EXPECT_NE(errors_of("[]").find("expected an object, got array"), std::string::npos);
+  EXPECT_NE(errors_of(with_grippers(R"({"gripper": [1, 1], "knots": [{"time": 0, "z": 1e999}]})")), "");
+  EXPECT_NE(errors_of(""), "");
+  std::filesystem::remove(file_);
+  EXPECT_EQ(read_schedule(file_, rig_).errors.front().message, "cannot be opened");
+}
+
+TEST_F(ScheduleFile, BrokenJsonNamesItsLine) {
+  write_text(file_, "{\n  \"format\": \"drapeplan-schedule 1\",\n  oops\n}\n");
+  const ScheduleReading reading = read_schedule(file_, rig_);
+  ASSERT_EQ(reading.errors.size(), 1u);
+  EXPECT_EQ(reading.errors.front().line, 3);
+}
+
+TEST_F(ScheduleFile, NotFiniteOrWrongSizedSchedulesAreNotWritten) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(write_schedule(file_, {{{{0, 1}}}, 0.1}, rig_), std::invalid_argument);
+  EXPECT_THROW(write_schedule(file_, {{{{0, 1}}, {}}, 0.1}, rig_), std::invalid_argument);
+  EXPECT_THROW(write_schedule(file_, {{{{0, 1}}, {{0, nan}}}, 0.1}, rig_), std::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(file_));
+}
+
+const std::string kPlane = R"(, "plane_knots": [{"time": 0, "x": 0.1, "y": 0.2}])";
+const std::string kThird = R"({"gripper": [1, 1], "knots": [{"time": 0, "z": 1}])" + kPlane;
+
+TEST_F(ScheduleFile, RoundTripKeepsInPlanePathsAndReleases) {
+  rig_.driven = Driven::xyz;
+  const Schedule schedule{.paths = {{{0, 1}}, {{0, 1}, {2, 0.5}}},
+                          .blend_time = 0.1,
+                          .plane_paths = {{{0, {0.1, 1.0 / 3}}, {3, {-0.1, 0.2}}}, {{0, {0.3, 0.1}}}},
+                          .release = {std::nullopt, 2.5}};
+  write_schedule(file_, schedule, rig_);
+  const ScheduleReading reading = read_schedule(file_, rig_);
+  ASSERT_TRUE(reading.errors.empty()) << reading.errors.front().message;
+  ASSERT_EQ(reading.value.plane_paths.size(), 2u);
+  ASSERT_EQ(reading.value.plane_paths[0].size(), 2u);
+  for (size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(reading.value.plane_paths[0][k].time, schedule.plane_paths[0][k].time);
+    EXPECT_EQ(reading.value.plane_paths[0][k].xy, schedule.plane_paths[0][k].xy);
+  }
+  EXPECT_EQ(reading.value.release, schedule.release);
+}
+
+TEST_F(ScheduleFile, InPlanePathsBelongToRigsThatDriveXAndY) {
+  EXPECT_EQ(errors_of(with_grippers(kThird + "}," + kSecond)),
+            "/grippers/0/plane_knots: the rig drives its joints in z only (grippers.driven)\n");
+  EXPECT_THROW(write_schedule(file_, {{{{0, 1}}, {{0, 1}}}, 0.1, {{{0, {0, 0}}}, {{0, {0, 0}}}}}, rig_),
+               std::invalid_argument);
+  rig_.driven = Driven::xyz;
+  EXPECT_EQ(errors_of(with_grippers(kThird + "}," + kSecond)),
+            "/grippers/1/plane_knots: expected a list with at least one knot\n");
+  EXPECT_THROW(write_schedule(file_, {{{{0, 1}}, {{0, 1}}}, 0.1}, rig_), std::invalid_argument);
+  const std::string bad =
+      R"({"gripper": [2, 1], "knots": [{"time": 0, "z": 1}], "release": -1,
+          "plane_knots": [{"time": 0, "x": "left", "y": 0}, {"time": 0, "x": 1, "y": 2, "z": 3}]})";
+  EXPECT_EQ(errors_of(with_grippers(kThird + R"(, "release": "soon"},)" + bad)),
+            "/grippers/0/release: \"soon\": expected a number\n"
+            "/grippers/1/plane_knots/0/x: \"left\": expected a number\n"
+            "/grippers/1/plane_knots/1/z: unknown key; expected one of: time, x, y\n"
+            "/grippers/1/plane_knots/1/time: 0: times must increase; the knot before is at 0\n"
+            "/grippers/1/release: -1: must not be < 0\n");
+}
+
+TEST_F(ScheduleFile, CsvHasColumnsForWhatTheScheduleHasOnly) {
+  const auto header_and_last = [this](const Schedule& schedule) {
+    write_schedule_csv(file_, schedule, rig_, 10);
+    std::ifstream stream(file_);
+    std::string header, line, last;
+    std::getline(stream, header);
+    while (std::getline(stream, line)) last = line;
+    return std::pair{header, last};
+  };
+  Schedule schedule{{{{0, 1}}, {{0, 1}, {2, 0.5}}}, 0.5};
+  schedule.release = {std::nullopt, 2.0};
+  EXPECT_EQ(header_and_last(schedule),
+            (std::pair<std::string, std::string>{"gripper_i,gripper_j,time_s,z_m,vz_m_per_s,suction",
+                                                 "2,1,2.5,0.5,0,0"}));
+  schedule.release.clear();
+  rig_.driven = Driven::xyz;
+  schedule.plane_paths = {{{0, {0, 0}}}, {{0, {0.25, 1}}}};
+  EXPECT_EQ(header_and_last(schedule),
+            (std::pair<std::string, std::string>{
+                "gripper_i,gripper_j,time_s,z_m,vz_m_per_s,x_m,y_m,vx_m_per_s,vy_m_per_s",
+                "2,1,2.5,0.5,0,0.25,1,0,0"}));
+}
+
+TEST_F(ScheduleFile, CsvHoldsKnotsBlendsAndARaster) {
+  const Schedule schedule{{{{0, 1}, {0.55, 0.9}, {1.003, 0.5}}, {{0, 1}}}, 0.1};
+  write_schedule_csv(file_, schedule, rig_, 10);
+  std::ifstream stream(file_);
+  std::string line;
+  std::getline(stream, line);
+  EXPECT_EQ(line, "gripper_i,gripper_j,time_s,z_m,vz_m_per_s");
+  std::vector<double> times;
+  int still = 0;
+  while (std::getline(stream, line)) {
+    int i = 0, j = 0;
+    double time = 0, z = 0, vz = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%d,%d,%lf,%lf,%lf", &i, &j, &time, &z, &vz), 5) << line;
+    EXPECT_EQ(j, 1);
+    const Command command = schedule.command(i - 1, time);
+    EXPECT_EQ(z, command.z);
+    EXPECT_EQ(vz, command.vz);
+    if (i == 1) times.push_back(time);
+    if (i == 2) still += std::abs(z - 1) <= 1e-12 && vz == 0;
+  }
+  const std::vector<double> expected{0,          0.1, 0.2, 0.3, 0.4, 0.5,   0.55, 0.6,
+                                     0.55 + 0.1, 0.7, 0.8, 0.9, 1.0, 1.003, 1.1,  1.003 + 0.1};
+  EXPECT_EQ(times, expected);
+  EXPECT_GE(still, 12);
+}
+
+}  // namespace
+}  // namespace drapeplan

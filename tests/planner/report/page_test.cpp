@@ -1,0 +1,80 @@
+#include "planner/report/page.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "planner/drape/scoring.hpp"
+
+namespace drapeplan {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+ReportRow row(const std::string& name, double separation) {
+  ReportRow result{name, {}};
+  result.score.valid = true;
+  result.score.max_separation = separation;
+  return result;
+}
+
+TEST(HtmlReport, EscapesEveryTextButThePictures) {
+  const std::string evil = "<script>alert(\"x\")</script>";
+  PlanReport report;
+  report.title = report.description = report.verdict = report.reach = evil;
+  report.rows = {{evil, failed_score(evil)}};
+  report.figures = {{evil, "<svg><title>kept</title></svg>"}};
+  report.notes = {evil};
+  report.facts = report.settings = report.files = {{evil, evil}};
+  const std::string page = html_report(report);
+  EXPECT_FALSE(contains(page, "<script"));
+  EXPECT_FALSE(contains(page, "\"x\""));
+  EXPECT_TRUE(contains(page, "<svg><title>kept</title></svg>"));
+  EXPECT_TRUE(contains(page, "failed: &lt;script&gt;"));
+}
+
+TEST(HtmlReport, LoadsNothingFromElsewhere) {
+  PlanReport report;
+  report.title = "t";
+  report.files = {{"schedule.json", "knots"}};
+  const std::string page = html_report(report);
+  for (const char* word : {"http:", "https:", "<script", "@import", "url(", "<link"}) {
+    EXPECT_FALSE(contains(page, word)) << word;
+  }
+  EXPECT_TRUE(contains(page, "href=\"./schedule.json\""));
+}
+
+TEST(HtmlReport, BestValidRowStandsOutAndReferencesDoNot) {
+  PlanReport report;
+  ReportRow published = row("published", 0.0001);
+  published.reference = true;
+  published.score.rms_separation = kNan;
+  ReportRow failed{"failed", failed_score("diverged")};
+  report.rows = {published, row("uniform", 0.0122), row("optimised", 0.0034), failed};
+  const std::string page = html_report(report);
+  EXPECT_TRUE(contains(page, "<td class=\"best\">3.40</td>"));
+  EXPECT_FALSE(contains(page, "<td class=\"best\">0.10</td>"));
+  EXPECT_FALSE(contains(page, "<td class=\"best\">12.20</td>"));
+  EXPECT_TRUE(contains(page, "<td>0.10</td><td>\u2013</td>"));
+  EXPECT_TRUE(contains(page, "failed: diverged"));
+}
+
+TEST(HtmlReport, OneRowHasNothingToStandOutFrom) {
+  PlanReport report;
+  report.rows = {row("uniform", 0.0122)};
+  EXPECT_FALSE(contains(html_report(report), "class=\"best\""));
+}
+
+TEST(HtmlReport, EmptyPartsAreLeftOut) {
+  const std::string page = html_report({});
+  EXPECT_FALSE(contains(page, "<h2>"));
+  EXPECT_FALSE(contains(page, "<table"));
+  EXPECT_TRUE(contains(page, "</html>"));
+}
+
+}  // namespace
+}  // namespace drapeplan

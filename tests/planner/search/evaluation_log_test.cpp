@@ -1,0 +1,214 @@
+#include "planner/search/evaluation_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+
+#include "planner/base/parallel.hpp"
+#include "planner/search/batch_evaluate.hpp"
+
+namespace drapeplan {
+namespace {
+
+Schedule schedule_ending_at(double z) {
+  return {{{{0, 0.1}, {1, z}}}, 0.1};
+}
+
+Outcome outcome_of(double objective) {
+  Outcome outcome;
+  outcome.score.valid = true;
+  outcome.score.objective = objective;
+  outcome.score.max_separation = objective / 3;
+  outcome.report.steps = 12345678901;
+  outcome.report.message = "end of the schedule";
+  outcome.report.state_hash = 0xfedcba9876543210ULL;
+  outcome.wall_seconds = 0.25;
+  return outcome;
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void put(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+/// A fresh file name per test.
+class EvaluationLogFile : public testing::Test {
+ protected:
+  EvaluationLogFile()
+      : path_(testing::TempDir() + "drapeplan_" +
+              testing::UnitTest::GetInstance()->current_test_info()->name() + ".jsonl") {
+    std::filesystem::remove(path_);
+  }
+  ~EvaluationLogFile() override { std::filesystem::remove(path_); }
+  std::string path_;
+};
+
+TEST(ScheduleHash, SeesEveryNumberButNotTheSignOfZero) {
+  const Schedule a = schedule_ending_at(0.01);
+  EXPECT_EQ(schedule_hash(a), schedule_hash(schedule_ending_at(0.01)));
+  EXPECT_NE(schedule_hash(a), schedule_hash(schedule_ending_at(std::nextafter(0.01, 1))));
+  Schedule b = a;
+  b.blend_time = 0.2;
+  EXPECT_NE(schedule_hash(a), schedule_hash(b));
+  EXPECT_EQ(schedule_hash(schedule_ending_at(0.0)), schedule_hash(schedule_ending_at(-0.0)));
+  EXPECT_NE(schedule_hash({{{{0, 1}}, {{0, 1}}}, 0}), schedule_hash({{{{0, 1}, {0, 1}}}, 0}));
+}
+
+TEST_F(EvaluationLogFile, ServesAKnownScheduleAfterReopeningToTheLastBit) {
+  const double third = 1.0 / 3;
+  {
+    EvaluationLog log(path_, 42);
+    for (const double z : {0.01, 0.02}) {
+      const Outcome o =
+          log.evaluate_once(schedule_ending_at(z), "screen", [&] { return outcome_of(z * third); });
+      EXPECT_FALSE(o.cached);
+      log.write(schedule_ending_at(z), "screen", "wave", o);
+    }
+  }
+  EvaluationLog log(path_, 42);
+  const auto must_not_run = []() -> Outcome { throw std::logic_error("ran"); };
+  const Outcome o = log.evaluate_once(schedule_ending_at(0.02), "screen", must_not_run);
+  EXPECT_TRUE(o.cached);
+  EXPECT_TRUE(o.score.valid);
+  EXPECT_EQ(o.score.objective, 0.02 * third);
+  EXPECT_EQ(o.score.max_separation, 0.02 * third / 3);
+  EXPECT_EQ(o.report.steps, 12345678901);
+  EXPECT_EQ(o.report.state_hash, 0xfedcba9876543210ULL);
+  EXPECT_EQ(o.report.message, "end of the schedule");
+  EXPECT_FALSE(log.evaluate_once(schedule_ending_at(0.02), "report", [] { return outcome_of(1); }).cached);
+  log.write(schedule_ending_at(0.02), "report", "report", outcome_of(1));
+  const auto lines = log.evaluations();
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[2].number, 3);
+  EXPECT_EQ(lines[1].best_so_far, 0.01 * third);
+  EXPECT_EQ(lines[2].best_so_far, 1);
+}
+
+TEST_F(EvaluationLogFile, KeepsFailuresWithAnyReasonAndAnyNumber) {
+  {
+    EvaluationLog log(path_, 1);
+    Outcome failed = outcome_of(std::numeric_limits<double>::infinity());
+    failed.score.valid = false;
+    failed.score.reason = "not finite at node 812\n\xff";
+    failed.report.status = RunStatus::diverged;
+    log.write(schedule_ending_at(0), "screen", "wave", failed);
+  }
+  const auto lines = EvaluationLog(path_, 1).evaluations();
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_FALSE(lines[0].outcome.score.valid);
+  EXPECT_FALSE(std::isfinite(lines[0].outcome.score.objective));
+  EXPECT_FALSE(std::isfinite(lines[0].best_so_far));
+  EXPECT_EQ(lines[0].outcome.score.reason.substr(0, 23), "not finite at node 812\n");
+  EXPECT_EQ(lines[0].outcome.report.status, RunStatus::diverged);
+}
+
+TEST_F(EvaluationLogFile, CutsATornLastLineWhereverItIsTorn) {
+  {
+    EvaluationLog log(path_, 1);
+    for (const double z : {0.0, 0.01}) log.write(schedule_ending_at(z), "screen", "wave", outcome_of(z));
+  }
+  const std::string whole = text_of(path_);
+  const size_t header = whole.find('\n') + 1, second = whole.find('\n', header) + 1;
+  for (size_t length = 0; length <= whole.size(); length += 7) {
+    put(path_, whole.substr(0, length));
+    {
+      EvaluationLog log(path_, 1);
+      EXPECT_EQ(log.evaluations().size(), length < second ? 0u : length < whole.size() ? 1u : 2u);
+      log.write(schedule_ending_at(0.5), "screen", "wave", outcome_of(5));
+    }
+    EXPECT_EQ(read_evaluations(path_).back().outcome.score.objective, 5);
+  }
+}
+
+TEST_F(EvaluationLogFile, RefusesAnotherCaseABrokenLineOrAForeignFileAndLeavesItAlone) {
+  {
+    EvaluationLog log(path_, 1);
+    for (const double z : {0.0, 0.01}) log.write(schedule_ending_at(z), "screen", "wave", outcome_of(z));
+  }
+  const std::string whole = text_of(path_);
+  std::string broken = whole;
+  broken[broken.find('\n') + 3] = '\\';
+  const std::string foreign = "my diary", foreign_line = "{\"format\": \"other\"}\n";
+  for (const std::string& text : {broken, foreign, foreign_line}) {
+    put(path_, text);
+    EXPECT_THROW(EvaluationLog(path_, 1), std::runtime_error);
+    EXPECT_EQ(text_of(path_), text);
+  }
+  put(path_, whole);
+  EXPECT_THROW(EvaluationLog(path_, 2), std::runtime_error);
+  EXPECT_EQ(text_of(path_), whole);
+}
+
+TEST(EvaluationLog, RunsAScheduleOnceThoughManyThreadsAskForIt) {
+  EvaluationLog log;
+  std::atomic<int> runs = 0;
+  parallel_for(
+      64,
+      [&](int i) {
+        const Schedule schedule = schedule_ending_at(i % 4);
+        log.evaluate_once(schedule, "screen", [&] {
+          ++runs;
+          return outcome_of(i % 4);
+        });
+      },
+      4);
+  EXPECT_EQ(runs, 4);
+}
+
+TEST(BatchEvaluate, WritesABatchInItsOrderAndTurnsExceptionsIntoFailures) {
+  const auto evaluate = [](const Schedule& schedule, const std::string&) {
+    const double z = schedule.paths[0][1].z;
+    double burn = 0;
+    for (int i = 0; i < int(20000 * (5 - z)); ++i) burn += std::sqrt(double(i));  // the first take longest
+    if (z == 2) throw std::runtime_error("no such mold");
+    return outcome_of(z == 3 ? std::nan("") : z + 0 * burn);
+  };
+  std::vector<Schedule> schedules;
+  for (const double z : {0.0, 1.0, 2.0, 3.0, 1.0, 4.0}) schedules.push_back(schedule_ending_at(z));
+  for (const int threads : {1, 2, 4}) {
+    EvaluationLog log;
+    const auto outcomes = make_batch_evaluate(evaluate, log, threads)(schedules, "screen", "gripper");
+    ASSERT_EQ(outcomes.size(), 6u);
+    EXPECT_EQ(outcomes[1].score.objective, 1);
+    EXPECT_EQ(outcomes[4].score.objective, 1);
+    EXPECT_TRUE(outcomes[4].cached);
+    EXPECT_EQ(outcomes[2].score.reason, "no such mold");
+    EXPECT_FALSE(outcomes[3].score.valid);
+    const auto lines = log.evaluations();
+    ASSERT_EQ(lines.size(), 5u);
+    const int order[] = {0, 1, 2, 3, 5};
+    for (size_t k = 0; k < 5; ++k) {
+      EXPECT_EQ(lines[k].number, int(k) + 1);
+      EXPECT_EQ(lines[k].schedule_hash, schedule_hash(schedules[size_t(order[k])]));
+      EXPECT_EQ(lines[k].best_so_far, 0);
+    }
+  }
+}
+
+TEST(ParallelFor, RunsEveryIndexOnceAndThrowsTheFirstException) {
+  std::vector<int> hits(100, 0);
+  const auto body = [&](int i) {
+    ++hits[size_t(i)];
+    if (i == 70 || i == 30) throw std::runtime_error(std::to_string(i));
+  };
+  try {
+    parallel_for(100, body, 3);
+    FAIL() << "no exception";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "30");
+  }
+  for (const int hit : hits) EXPECT_EQ(hit, 1);
+}
+
+}  // namespace
+}  // namespace drapeplan

@@ -1,0 +1,231 @@
+#include "planner/search/stages.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+
+namespace drapeplan {
+namespace {
+
+SequenceFrame frame_of(int columns, int rows) {
+  SequenceFrame frame;
+  frame.rig.columns = columns;
+  frame.rig.rows = rows;
+  frame.rig.spacing = 0.1;
+  for (int g = 0; g < frame.rig.count(); ++g) frame.target_z.push_back(0.05 + 0.1 * frame.rig.place(g)[0]);
+  return frame;
+}
+
+/// The arrival times [s] that the synthetic ply likes: a wave from off the centre, plus what no wave can
+/// give.
+std::vector<double> liked_arrivals(const SequenceFrame& frame) {
+  std::vector<double> arrivals;
+  for (int g = 0; g < frame.rig.count(); ++g) {
+    const double distance = (frame.rig.place(g) - Eigen::Vector2d(-0.06, 0.08)).norm() / frame.rig.spacing;
+    arrivals.push_back(2.5 + 1.4 * distance + 0.5 * std::sin(3.7 * g));
+  }
+  return arrivals;
+}
+
+/// r.m.s. deviation of the arrival times (last movement of each gripper, gauge removed) from the liked ones
+/// [s].
+double deviation(const SequenceFrame& frame, const Schedule& schedule) {
+  const std::vector<double> liked = liked_arrivals(frame);
+  std::vector<double> error;
+  double mean = 0;
+  for (size_t g = 0; g < liked.size(); ++g) {
+    const auto& path = schedule.paths[g];
+    error.push_back(path[path.size() - 2].time - frame.options.preshape_duration - liked[g]);
+    mean += error.back() / double(liked.size());
+  }
+  double sum = 0;
+  for (const double e : error) sum += (e - mean) * (e - mean);
+  return std::sqrt(sum / double(liked.size()));
+}
+
+/// Deterministic noise in [-1, 1] from the schedule alone.
+double hash_noise(std::uint64_t hash, std::uint64_t salt) {
+  std::uint64_t x = (hash ^ salt) * 0x9e3779b97f4a7c15ULL;
+  x ^= x >> 29;
+  x *= 0xbf58476d1ce4e5b9ULL;
+  x ^= x >> 32;
+  return 2 * (double(x >> 11) * 0x1p-53) - 1;
+}
+
+/// 0.1 + deviation, 1 % noise, about one in twelve fails; "screen" is biased and noisier than "report".
+Evaluate synthetic(const SequenceFrame& frame, std::atomic<int>* runs = nullptr) {
+  return [frame, runs](const Schedule& schedule, const std::string& fidelity) {
+    if (runs) ++*runs;
+    const std::uint64_t hash = schedule_hash(schedule);
+    const bool screen = fidelity == "screen";
+    if (screen && hash_noise(hash, 17) > 1 - 1.0 / 6) throw std::runtime_error("not finite at node 3");
+    Outcome outcome;
+    outcome.score.valid = true;
+    outcome.score.duration = schedule.duration();
+    outcome.score.objective = (0.1 + deviation(frame, schedule)) * (screen ? 1.2 : 1.0) *
+                              (1 + (screen ? 0.01 : 0.002) * hash_noise(hash, screen ? 1 : 2));
+    return outcome;
+  };
+}
+
+StagedOptions options_of(int wave, int gripper) {
+  StagedOptions options;
+  options.optimise.wave_evaluations = wave;
+  options.optimise.gripper_evaluations = gripper;
+  return options;
+}
+
+StagedResult search(const SequenceFrame& frame, const StagedOptions& options, EvaluationLog& log,
+                    std::atomic<int>* runs = nullptr) {
+  return staged_search(frame, options, make_batch_evaluate(synthetic(frame, runs), log, options.threads));
+}
+
+void expect_same(const StagedResult& a, const StagedResult& b) {
+  EXPECT_EQ(a.message, b.message);
+  EXPECT_EQ(schedule_hash(a.best.schedule), schedule_hash(b.best.schedule));
+  EXPECT_EQ(a.evaluations, b.evaluations);
+  EXPECT_EQ(a.failed_evaluations, b.failed_evaluations);
+  ASSERT_EQ(a.history.size(), b.history.size());
+  for (size_t k = 0; k < a.history.size(); ++k) {
+    EXPECT_EQ(a.history[k].schedule_hash, b.history[k].schedule_hash);
+    EXPECT_EQ(a.history[k].objective, b.history[k].objective);
+    EXPECT_EQ(a.history[k].best_so_far, b.history[k].best_so_far);
+  }
+}
+
+TEST(StagedSearch, BeatsBothBaselinesAndComesNearTheOptimum) {
+  const SequenceFrame frame = frame_of(5, 5);
+  EvaluationLog log;
+  const StagedResult result = search(frame, options_of(120, 600), log);
+  EXPECT_TRUE(result.beats_baselines) << result.message;
+  const double uniform = deviation(frame, result.uniform.schedule);
+  const double wave = deviation(frame, result.wave.schedule);
+  const double best = deviation(frame, result.best.schedule);
+  RecordProperty("uniform", std::to_string(uniform));
+  RecordProperty("wave", std::to_string(wave));
+  RecordProperty("best", std::to_string(best));
+  EXPECT_LE(best, 0.15 * std::min(uniform, wave));
+  EXPECT_LE(result.best.outcome.score.objective, result.wave.outcome.score.objective);
+  EXPECT_GT(result.failed_evaluations, 0);
+}
+
+TEST(StagedSearch, TheStageOverGrippersGainsWhereNoWaveFits) {
+  const SequenceFrame frame = frame_of(5, 5);
+  EvaluationLog waves_only, both;
+  const double wave = deviation(frame, search(frame, options_of(120, 0), waves_only).best.schedule);
+  const double gripper = deviation(frame, search(frame, options_of(120, 600), both).best.schedule);
+  EXPECT_LE(gripper, 0.5 * wave);
+}
+
+TEST(StagedSearch, OwnStrokesOfEveryGripperGainToo) {
+  const SequenceFrame frame = frame_of(5, 5);
+  StagedOptions options = options_of(120, 600);
+  options.own_strokes = true;
+  EvaluationLog log;
+  const StagedResult result = search(frame, options, log);
+  EXPECT_TRUE(result.beats_baselines) << result.message;
+  EXPECT_LE(deviation(frame, result.best.schedule), 0.4 * deviation(frame, result.wave.schedule));
+}
+
+TEST(StagedSearch, ResultDoesNotDependOnTheNumberOfThreads) {
+  const SequenceFrame frame = frame_of(3, 3);
+  StagedOptions one = options_of(60, 80), two = options_of(60, 80);
+  one.threads = 1;
+  two.threads = 2;
+  EvaluationLog log_one, log_two;
+  const StagedResult a = search(frame, one, log_one);
+  expect_same(a, search(frame, two, log_two));
+  EXPECT_EQ(int(log_one.evaluations().size()), a.evaluations);
+  EXPECT_EQ(log_two.evaluations().size(), log_one.evaluations().size());
+}
+
+TEST(StagedSearch, ResumedFromATornLogGivesTheSameResultWithoutRunningAgain) {
+  const SequenceFrame frame = frame_of(3, 3);
+  const StagedOptions options = options_of(60, 80);
+  const std::string path = testing::TempDir() + "drapeplan_staged_resume.jsonl";
+  std::filesystem::remove(path);
+  std::atomic<int> first_runs = 0, resumed_runs = 0, third_runs = 0;
+  StagedResult whole;
+  {
+    EvaluationLog log(path, 9);
+    whole = search(frame, options, log, &first_runs);
+  }
+  EXPECT_EQ(first_runs, whole.evaluations);
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+  {
+    EvaluationLog log(path, 9);
+    const int kept = int(log.evaluations().size());
+    EXPECT_GT(kept, 0);
+    expect_same(whole, search(frame, options, log, &resumed_runs));
+    EXPECT_EQ(resumed_runs, first_runs - kept);
+  }
+  EvaluationLog log(path, 9);
+  expect_same(whole, search(frame, options, log, &third_runs));
+  EXPECT_EQ(third_runs, 0);
+  std::filesystem::remove(path);
+}
+
+TEST(StagedSearch, SaysSoWhenNothingBeatsTheBaselines) {
+  const SequenceFrame frame = frame_of(3, 3);
+  const std::uint64_t favourite = schedule_hash(to_schedule(frame, uniform_strokes(frame)));
+  EvaluationLog log;
+  const Evaluate evaluate = [&](const Schedule& schedule, const std::string& fidelity) {
+    Outcome outcome;
+    outcome.score.valid = true;
+    const double lie = fidelity == "screen" ? -1 : 1;  // the screen prefers what the report does not
+    outcome.score.objective = 10 + lie * (schedule_hash(schedule) == favourite ? 0 : 1);
+    return outcome;
+  };
+  const StagedResult result = staged_search(frame, options_of(30, 30), make_batch_evaluate(evaluate, log));
+  EXPECT_FALSE(result.beats_baselines);
+  EXPECT_EQ(result.best.name, "uniform");
+  EXPECT_NE(result.message.find("nothing found beats the baselines"), std::string::npos) << result.message;
+}
+
+TEST(StagedSearch, EndsWithAMessageWhenEverythingFails) {
+  const SequenceFrame frame = frame_of(3, 3);
+  EvaluationLog log;
+  const Evaluate never = [](const Schedule&, const std::string&) -> Outcome {
+    throw std::runtime_error("no");
+  };
+  const StagedResult result = staged_search(frame, options_of(30, 30), make_batch_evaluate(never, log));
+  EXPECT_FALSE(result.beats_baselines);
+  EXPECT_EQ(result.failed_evaluations, result.evaluations);
+  EXPECT_NE(result.message.find("no schedule could be evaluated"), std::string::npos) << result.message;
+}
+
+TEST(StagedSearch, SmallBudgetsAreKept) {
+  const SequenceFrame frame = frame_of(3, 3);
+  for (const int budget : {0, 1, 5, 13}) {
+    EvaluationLog log;
+    const StagedResult result = search(frame, options_of(budget, budget), log);
+    const int screened = std::max(budget, 2) + budget;  // the baselines are always screened
+    EXPECT_LE(int(result.history.size()), screened + 2 + 4 + 1);
+    EXPECT_TRUE(result.uniform.outcome.score.valid && result.wave.outcome.score.valid);
+  }
+}
+
+TEST(StagedSearch, ProgressCountsUpToThePlan) {
+  const SequenceFrame frame = frame_of(3, 3);
+  EvaluationLog log;
+  const StagedOptions options = options_of(40, 40);
+  int last = 0, planned = 0;
+  const StagedResult result =
+      staged_search(frame, options, make_batch_evaluate(synthetic(frame), log), [&](const Progress& p) {
+        EXPECT_GT(p.done, last);
+        EXPECT_LE(p.done, p.planned);
+        last = p.done;
+        planned = p.planned;
+      });
+  EXPECT_EQ(last, int(result.history.size()));
+  EXPECT_LE(planned, 40 + 40 + 4 + 3);
+}
+
+}  // namespace
+}  // namespace drapeplan
