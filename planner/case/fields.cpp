@@ -129,7 +129,7 @@ void visit_score(FieldVisitor& v, ScoreOptions& s) {
            "A gap above it counts as wrinkled where the ply does not "
            "bridge a hollow",
            Dimension::length, positive()});
-  v.field({"target_separation", &s.target_separation, "Reference of the separations", Dimension::length,
+  v.field({"target_gap", &s.target_gap, "Reference of the gaps", Dimension::length,
            positive()});
   v.field({"target_boundary_offset", &s.target_boundary_offset, "Reference of the boundary offsets",
            Dimension::length, positive()});
@@ -142,9 +142,9 @@ void visit_score(FieldVisitor& v, ScoreOptions& s) {
       {"strain_limit", &s.strain_limit, "Fibre strain above it is penalised", Dimension::none, positive(1)});
   v.section({"weights", "Of the parts of the objective; 0 leaves a part out", false, {}, true}, true, [&] {
     v.field(
-        {"max_separation", &s.weight_max_separation, "Of the largest separation", Dimension::none, from(0)});
+        {"max_gap", &s.weight_max_gap, "Of the largest gap", Dimension::none, from(0)});
     v.field(
-        {"rms_separation", &s.weight_rms_separation, "Of the r.m.s. separation", Dimension::none, from(0)});
+        {"rms_gap", &s.weight_rms_gap, "Of the r.m.s. gap", Dimension::none, from(0)});
     v.field({"wrinkled_area", &s.weight_wrinkled_area, "Of the wrinkled area, per 1 % of the ply",
              Dimension::none, from(0)});
     v.field({"max_boundary_offset", &s.weight_max_boundary_offset, "Of the largest boundary offset",
@@ -275,7 +275,7 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
       "references", "Published results that are shown beside the own ones", c.references, [&v](Reference& r) {
         v.field({"name", &r.name, "Name in tables", Dimension::none, {}, true});
         v.field(
-            {"max_separation", &r.max_separation, "Largest separation", Dimension::length, from(0), true});
+            {"max_gap", &r.max_gap, "Largest gap", Dimension::length, from(0), true});
         v.field({"max_boundary_offset", &r.max_boundary_offset, "Largest boundary offset", Dimension::length,
                  from(0), true});
       });

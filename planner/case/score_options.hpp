@@ -6,12 +6,12 @@ namespace drapeplan {
 /// Each part is divided by its reference value and multiplied by its weight; a weight of 0 leaves it out.
 struct ScoreOptions {
   double wrinkle_threshold = 0.001;       ///< [m]
-  double target_separation = 0.001;       ///< reference of separations [m]
+  double target_gap = 0.001;       ///< reference of gaps [m]
   double target_boundary_offset = 0.002;  ///< reference of boundary offsets [m]
   double locking_angle_deg = 35;          ///< shear above it is penalised [deg]
   double strain_limit = 0.02;             ///< fibre strain above it is penalised [-]
-  double weight_max_separation = 1;
-  double weight_rms_separation = 1;
+  double weight_max_gap = 1;
+  double weight_rms_gap = 1;
   double weight_wrinkled_area = 1;  ///< reference: 1 % of the ply's area
   double weight_max_boundary_offset = 1;
   double weight_rms_boundary_offset = 1;

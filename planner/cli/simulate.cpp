@@ -181,7 +181,7 @@ std::string score_line(const Drape& drape) {
       "gap max %.2f mm, r.m.s. %.2f mm; boundary offset max %.2f mm, r.m.s. %.2f mm; shear %.1f deg; fibre "
       "tension %.2f %%, compression %.2f %%; objective %.3f\n"
       "actuator force max %.1f N; penetration %.3f mm; kinetic over internal energy at most %.2g\n",
-      1e3 * score.max_separation, 1e3 * score.rms_separation, 1e3 * score.max_boundary_offset,
+      1e3 * score.max_gap, 1e3 * score.rms_gap, 1e3 * score.max_boundary_offset,
       1e3 * score.rms_boundary_offset, score.max_shear_deg, 1e2 * score.max_fibre_strain,
       1e2 * score.max_fibre_compression, score.objective, score.max_actuator_force,
       1e3 * drape.run.report.largest_penetration, drape.run.report.largest_kinetic_ratio);

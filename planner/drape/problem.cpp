@@ -147,7 +147,7 @@ Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, i
   request.pause = part.pause;
   if (frames > 0) request.observe = [&drape](const Snapshot& frame) { drape.frames.push_back(frame); };
   drape.run = simulate(model, request);
-  drape.separation = separations(drape.run.final, *case_.mold, case_.material.thickness);
+  drape.gap = gaps(drape.run.final, *case_.mold, case_.material.thickness);
   if (drape.run.report.status != RunStatus::done) {
     drape.score = failed_score(drape.run.report.message);
     return drape;

@@ -32,7 +32,7 @@ ReachProblem reach_problem_of(const Case& value, const std::vector<Eigen::Vector
 struct Drape {
   RunResult run;
   Score score;
-  std::vector<double> separation;  ///< per node [m]
+  std::vector<double> gap;  ///< per node [m]
   std::vector<Snapshot> frames;    ///< equally spaced in time, as many as were asked for
 };
 

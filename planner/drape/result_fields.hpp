@@ -16,8 +16,8 @@ namespace drapeplan {
 /// Calls visit(key, field) for every number of a score: one list for writing and reading.
 template <class ScoreType, class Visit>
 void for_each_part(ScoreType& s, const Visit& visit) {
-  visit("max_separation", s.max_separation);
-  visit("rms_separation", s.rms_separation);
+  visit("max_gap", s.max_gap);
+  visit("rms_gap", s.rms_gap);
   visit("wrinkled_area", s.wrinkled_area);
   visit("max_boundary_offset", s.max_boundary_offset);
   visit("rms_boundary_offset", s.rms_boundary_offset);

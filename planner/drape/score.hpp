@@ -7,8 +7,8 @@ namespace drapeplan {
 
 /// Parts of the score (SI). Everything is evaluated at the end of the run, except forces and strains.
 struct Score {
-  double max_separation = 0;  ///< largest gap between ply underside and mold [m]
-  double rms_separation = 0;  ///< area-weighted [m]
+  double max_gap = 0;  ///< largest gap between ply underside and mold [m]
+  double rms_gap = 0;  ///< area-weighted [m]
   double wrinkled_area =
       0;  ///< area with a gap above the threshold where the ply is not bridging a hollow [m^2]
   double max_boundary_offset =

@@ -179,27 +179,27 @@ std::optional<std::string> not_finite(const Snapshot& end, const RunExtremes& ru
   return std::nullopt;
 }
 
-/// Separation parts of the score; false where the mold is not defined below a node (`node` says which).
-bool score_separation(const Mesh& mesh, const Snapshot& end, const Mold& mold, double thickness,
+/// Gap parts of the score; false where the mold is not defined below a node (`node` says which).
+bool score_gap(const Mesh& mesh, const Snapshot& end, const Mold& mold, double thickness,
                       const ScoreOptions& options, Score& score, size_t& node) {
-  const std::vector<double> gaps = separations(end, mold, thickness);
+  const std::vector<double> gaps = gaps(end, mold, thickness);
   const std::vector<double> areas = nodal_areas(mesh);
   const std::vector<bool> bridges = bridging(mesh, end, mold);
   double area = 0, integral = 0;
   for (node = 0; node < gaps.size(); ++node) {
     if (!std::isfinite(gaps[node])) return false;
-    score.max_separation = std::max(score.max_separation, gaps[node]);
+    score.max_gap = std::max(score.max_gap, gaps[node]);
     integral += areas[node] * gaps[node] * gaps[node];
     area += areas[node];
     if (gaps[node] > options.wrinkle_threshold && !bridges[node]) score.wrinkled_area += areas[node];
   }
-  score.rms_separation = std::sqrt(integral / area);
+  score.rms_gap = std::sqrt(integral / area);
   return true;
 }
 
 }  // namespace
 
-std::vector<double> separations(const Snapshot& end, const Mold& mold, double thickness) {
+std::vector<double> gaps(const Snapshot& end, const Mold& mold, double thickness) {
   std::vector<double> gaps;
   gaps.reserve(end.position.size());
   for (const Eigen::Vector3d& place : end.position) gaps.push_back(gap(mold, place, thickness));
@@ -248,7 +248,7 @@ Score score_drape(const Mesh& mesh, const Snapshot& end, const Mold& mold,
   if (const auto bad = not_finite(end, run, prescribed_boundary)) return failed_score("not finite: " + *bad);
   Score score;
   size_t node = 0;
-  if (!score_separation(mesh, end, mold, thickness, options, score, node)) {
+  if (!score_gap(mesh, end, mold, thickness, options, score, node)) {
     return failed_score("the mold is not defined below node " + std::to_string(node));
   }
   const BoundaryOffset offset = boundary_offset(ply_edge(mesh, end, thickness), prescribed_boundary);
@@ -263,7 +263,7 @@ Score score_drape(const Mesh& mesh, const Snapshot& end, const Mold& mold,
   score.duration = run.duration;
   const std::vector<double> areas = nodal_areas(mesh);
   score.objective = objective(score, options, std::accumulate(areas.begin(), areas.end(), 0.0));
-  const double parts = score.max_separation + score.rms_separation + score.max_boundary_offset +
+  const double parts = score.max_gap + score.rms_gap + score.max_boundary_offset +
                        score.rms_boundary_offset + score.objective;
   if (!std::isfinite(parts)) return failed_score("the ply is too far away: its score is not finite");
   score.valid = true;
@@ -281,8 +281,8 @@ Score failed_score(const std::string& reason) {
 double objective(const Score& score, const ScoreOptions& options, double ply_area) {
   const auto excess = [](double value, double limit) { return std::max(0.0, value - limit); };
   const double sum =
-      options.weight_max_separation * score.max_separation / options.target_separation +
-      options.weight_rms_separation * score.rms_separation / options.target_separation +
+      options.weight_max_gap * score.max_gap / options.target_gap +
+      options.weight_rms_gap * score.rms_gap / options.target_gap +
       options.weight_wrinkled_area * score.wrinkled_area / (kWrinkledShare * ply_area) +
       options.weight_max_boundary_offset * score.max_boundary_offset / options.target_boundary_offset +
       options.weight_rms_boundary_offset * score.rms_boundary_offset / options.target_boundary_offset +

@@ -47,8 +47,8 @@ struct Column {
 };
 
 constexpr std::array kColumns{
-    Column{"largest gap", "mm", &Score::max_separation, 1e3, 2, true},
-    Column{"gap, r.m.s.", "mm", &Score::rms_separation, 1e3, 2, true},
+    Column{"largest gap", "mm", &Score::max_gap, 1e3, 2, true},
+    Column{"gap, r.m.s.", "mm", &Score::rms_gap, 1e3, 2, true},
     Column{"wrinkled area", "cm\u00b2", &Score::wrinkled_area, 1e4, 1, true},
     Column{"largest boundary offset", "mm", &Score::max_boundary_offset, 1e3, 2, true},
     Column{"boundary offset, r.m.s.", "mm", &Score::rms_boundary_offset, 1e3, 2, true},

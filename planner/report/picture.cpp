@@ -60,10 +60,10 @@ void check(const std::vector<DrapePanel>& panels) {
   if (panels.empty()) throw std::invalid_argument("drape_picture: no panels");
   for (const DrapePanel& panel : panels) {
     const size_t nodes = panel.mesh.rest.size();
-    if (panel.position.size() == nodes && panel.separation.size() == nodes) continue;
+    if (panel.position.size() == nodes && panel.gap.size() == nodes) continue;
     throw std::invalid_argument("drape_picture: panel \"" + panel.title + "\" has " +
                                 std::to_string(panel.position.size()) + " positions and " +
-                                std::to_string(panel.separation.size()) + " separations for " +
+                                std::to_string(panel.gap.size()) + " gaps for " +
                                 std::to_string(nodes) + " nodes");
   }
 }
@@ -94,7 +94,7 @@ View common_view(const std::vector<DrapePanel>& panels, const Extent& mold) {
 Bands common_bands(const std::vector<DrapePanel>& panels) {
   double largest = 0;
   for (const DrapePanel& panel : panels) {
-    for (const double gap : panel.separation) largest = std::max(largest, finite_or_zero(gap));
+    for (const double gap : panel.gap) largest = std::max(largest, finite_or_zero(gap));
   }
   if (largest <= 0) return {};
   const double step = nice_step(largest, kMostBands);
@@ -114,7 +114,7 @@ void draw_bands(Svg& svg, const DrapePanel& panel, const View& view, const Bands
   std::vector<double> gaps;
   for (size_t node = 0; node < panel.position.size(); ++node) {
     places.push_back(panel.position[node].allFinite() ? view.pixel(panel.position[node]) : Vector2d(0, 0));
-    gaps.push_back(std::max(0.0, finite_or_zero(panel.separation[node])));
+    gaps.push_back(std::max(0.0, finite_or_zero(panel.gap[node])));
   }
   std::vector<std::array<int, 4>> quads;
   double longest = 0;  // edge of an element [px]
@@ -191,7 +191,7 @@ std::vector<std::string> draw_marks(Svg& svg, const DrapePanel& panel, const Vie
   std::vector<std::string> lines;
   std::vector<Vector2d> taken;
   const auto largest =
-      std::max_element(panel.separation.begin(), panel.separation.end(),
+      std::max_element(panel.gap.begin(), panel.gap.end(),
                        [](double a, double b) { return finite_or_zero(a) < finite_or_zero(b); });
   if (panel.largest_offset) {
     const auto& [edge, boundary] = *panel.largest_offset;
@@ -199,8 +199,8 @@ std::vector<std::string> draw_marks(Svg& svg, const DrapePanel& panel, const Vie
     draw_label(svg, view, 0.5 * (view.pixel(edge) + view.pixel(boundary)),
                millimetres((edge - boundary).norm()), taken);
   }
-  if (largest != panel.separation.end()) {
-    const Vector3d& place = panel.position[size_t(largest - panel.separation.begin())];
+  if (largest != panel.gap.end()) {
+    const Vector3d& place = panel.position[size_t(largest - panel.gap.begin())];
     lines.push_back("largest gap  " + millimetres(*largest));
     if (place.allFinite() && finite_or_zero(*largest) > 0) {
       draw_cross(svg, view.pixel(place));

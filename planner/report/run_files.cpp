@@ -29,7 +29,7 @@ std::string format(const char* pattern, Values... values) {
 
 std::string short_score(const Score& score) {
   if (!score.valid) return score.reason;
-  return format("gap %.1f mm, boundary %.1f mm, objective %.2f", 1e3 * score.max_separation,
+  return format("gap %.1f mm, boundary %.1f mm, objective %.2f", 1e3 * score.max_gap,
                 1e3 * score.max_boundary_offset, score.objective);
 }
 
@@ -40,7 +40,7 @@ std::vector<ReportRow> rows_of(const DrapeProblem& problem, const PlanResult& re
     Score score;
     for_each_part(score, [](const char*, double& part) { part = kNaN; });
     score.valid = true;
-    score.max_separation = reference.max_separation;
+    score.max_gap = reference.max_gap;
     score.max_boundary_offset = reference.max_boundary_offset;
     rows.push_back({.name = reference.name, .score = score, .reference = true});
   }
@@ -94,7 +94,7 @@ DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const st
                    .subtitle = short_score(drape.score),
                    .mesh = mesh,
                    .position = drape.run.final.position,
-                   .separation = drape.separation,
+                   .gap = drape.gap,
                    .boundary = problem.mapping().boundary,
                    .pads = drape.run.final.pad,
                    .pad_radius = problem.value().grippers->pad_radius,
@@ -112,7 +112,7 @@ void write_frames(const std::filesystem::path& folder, const std::string& name, 
   std::vector<PvdEntry> entries;
   for (size_t k = 0; k < frames.size(); ++k) {
     const std::string file = format("%s_%03zu.vtu", name.c_str(), k);
-    const std::vector<double> gaps = mold ? separations(frames[k], *mold, thickness) : std::vector<double>{};
+    const std::vector<double> gaps = mold ? gaps(frames[k], *mold, thickness) : std::vector<double>{};
     write_vtu(folder / file, mesh, frames[k], gaps);
     entries.push_back({frames[k].time, file});
   }
@@ -186,7 +186,7 @@ std::string comparison_table(const DrapeProblem& problem, const PlanResult& resu
       continue;
     }
     for (const double part :
-         {s.max_separation, s.rms_separation, s.max_boundary_offset, s.rms_boundary_offset}) {
+         {s.max_gap, s.rms_gap, s.max_boundary_offset, s.rms_boundary_offset}) {
       text += " " + cell(1e3 * part, "%*.2f", 10);
     }
     text += " " + cell(1e4 * s.wrinkled_area, "%*.1f", 10) + " " + cell(s.objective, "%*.2f", 9) + "\n";

@@ -88,16 +88,16 @@ void check_size(const char* field, size_t size, size_t expected, bool may_be_emp
 }  // namespace
 
 void write_vtu(const std::filesystem::path& file, const Mesh& mesh, const Snapshot& snapshot,
-               const std::vector<double>& separation) {
+               const std::vector<double>& gap) {
   const size_t nodes = mesh.rest.size(), elements = mesh.quads.size();
   check_size("position", snapshot.position.size(), nodes, false);
-  check_size("separation", separation.size(), nodes, true);
+  check_size("gap", gap.size(), nodes, true);
   check_size("director", snapshot.director.size(), nodes, true);
   check_size("shear", snapshot.shear.size(), elements, true);
   check_size("warp_strain", snapshot.warp_strain.size(), elements, true);
   check_size("weft_strain", snapshot.weft_strain.size(), elements, true);
   std::string point_data, cell_data;
-  if (!separation.empty()) point_data += scalars("separation", separation);
+  if (!gap.empty()) point_data += scalars("gap", gap);
   if (!snapshot.director.empty()) point_data += vectors("director", snapshot.director);
   if (!snapshot.shear.empty()) cell_data += scalars("shear", snapshot.shear);
   if (!snapshot.warp_strain.empty()) cell_data += scalars("warp_strain", snapshot.warp_strain);

@@ -11,13 +11,13 @@
 
 namespace drapeplan {
 
-/// Writes the ply as a VTK unstructured grid (XML, double precision, base64). Point data: `separation` [m],
+/// Writes the ply as a VTK unstructured grid (XML, double precision, base64). Point data: `gap` [m],
 /// `director` [-]; cell data: `shear` [rad], `warp_strain`, `weft_strain` [-]. An empty field is left out.
-/// @param separation  per node, or empty.
+/// @param gap  per node, or empty.
 /// @throws std::invalid_argument if a field fits neither nodes nor elements; std::runtime_error if writing
 /// fails.
 void write_vtu(const std::filesystem::path& file, const Mesh& mesh, const Snapshot& snapshot,
-               const std::vector<double>& separation = {});
+               const std::vector<double>& gap = {});
 
 /// Writes the mold's extent as n-by-n points with `normal` and `gaussian_curvature` [1/m^2]; cells with a
 /// corner where the mold is not defined are left out. n >= 2.

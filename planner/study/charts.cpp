@@ -105,7 +105,7 @@ double error_of(const StudyPoint& point, const std::string& name) {
 
 std::vector<StudyColumn> study_columns(const Study& study) {
   if (study.drapes) {
-    return {{"separation", "gap [mm]", 1e3},
+    return {{"gap", "gap [mm]", 1e3},
             {"boundary_offset", "offset [mm]", 1e3},
             {"relative", "larger of gap and offset [%]", 1e2},
             {"places", "nodes r.m.s. [mm]", 1e3},

@@ -125,8 +125,8 @@ StudyRun run_drape(const DrapeProblem& problem, const Schedule& schedule,
   run.objective = drape.score.objective;
   if (!run.valid) return run;
   const Score& score = drape.score;
-  run.figures = {{"separation", score.max_separation},
-                 {"rms_separation", score.rms_separation},
+  run.figures = {{"gap", score.max_gap},
+                 {"rms_gap", score.rms_gap},
                  {"boundary_offset", score.max_boundary_offset},
                  {"rms_boundary_offset", score.rms_boundary_offset},
                  {"wrinkled_area", score.wrinkled_area},
@@ -320,7 +320,7 @@ std::map<std::string, double> study_errors(const std::vector<StudyRun>& runs,
     for (const auto& [name, value] : reference[k].figures) {
       const double error = std::abs(runs[k].figures.at(name) - value);
       keep(name, error);
-      const bool leads = !drapes || name == "separation" || name == "boundary_offset";
+      const bool leads = !drapes || name == "gap" || name == "boundary_offset";
       if (leads && value != 0) keep("relative", error / std::abs(value));
       if (leads && value != 0) keep("relative_" + name, error / std::abs(value));
     }

@@ -209,7 +209,7 @@ TEST(SingleDrape, ClosesItsBooksAndEndsWithTheScoresOfDouble) {
   ASSERT_TRUE(one.valid);
   ASSERT_TRUE(two.valid) << two.reason;
   EXPECT_LE(drape[1].run.report.energy.balance_error, 1e-9);
-  EXPECT_NEAR(two.max_separation, one.max_separation, 2e-5);
+  EXPECT_NEAR(two.max_gap, one.max_gap, 2e-5);
   EXPECT_NEAR(two.max_boundary_offset, one.max_boundary_offset, 2e-5);
 }
 

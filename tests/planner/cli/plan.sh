@@ -27,7 +27,7 @@ for file in resolved.json result.json evaluations.jsonl schedule.json schedule.c
   [ -s "$work/two/$file" ] || fail "plan: $file is missing or empty"
 done
 result=$work/two/result.json
-for key in max_separation rms_separation wrinkled_area max_boundary_offset rms_boundary_offset max_shear_deg \
+for key in max_gap rms_gap wrinkled_area max_boundary_offset rms_boundary_offset max_shear_deg \
   max_fibre_strain max_actuator_force duration objective; do
   within "$result" "/baselines/uniform/$key" 0 1e6
   within "$result" "/baselines/wave/$key" 0 1e6

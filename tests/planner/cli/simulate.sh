@@ -13,7 +13,7 @@ done
 for key in kinetic internal external friction damping hourglass constraint; do
   within "$work/first.json" "/energy/$key" -1e3 1e3
 done
-for key in max_separation rms_separation wrinkled_area max_boundary_offset rms_boundary_offset max_shear_deg \
+for key in max_gap rms_gap wrinkled_area max_boundary_offset rms_boundary_offset max_shear_deg \
   max_fibre_strain max_actuator_force duration objective; do
   within "$work/first.json" "/score/$key" 0 1e6
 done

@@ -47,7 +47,7 @@ TEST(Scoring, PlyOnThePrescribedPlaceScoresZero) {
   const Mesh mesh = rectangle_mesh(kSide, kSide, 0.02);
   const Score score = score_on_plane(mesh, flat(mesh, {0, 0, 0}));
   EXPECT_TRUE(score.valid) << score.reason;
-  EXPECT_LE(score.max_separation, 1e-15);
+  EXPECT_LE(score.max_gap, 1e-15);
   EXPECT_LE(score.max_boundary_offset, 1e-15);
   EXPECT_LE(score.objective, 1e-9);
 }
@@ -56,8 +56,8 @@ TEST(Scoring, ParallelPlyAboveAPlaneHasItsGapEverywhere) {
   const Mesh mesh = rectangle_mesh(kSide, kSide, 0.02);
   const double gap = 0.004;
   const Score score = score_on_plane(mesh, flat(mesh, {0, 0, gap}));
-  EXPECT_LE(std::abs(score.max_separation - gap), 1e-12);
-  EXPECT_LE(std::abs(score.rms_separation - gap), 1e-12);
+  EXPECT_LE(std::abs(score.max_gap - gap), 1e-12);
+  EXPECT_LE(std::abs(score.rms_gap - gap), 1e-12);
   EXPECT_LE(std::abs(score.max_boundary_offset - gap), 1e-12);
   EXPECT_LE(std::abs(score.rms_boundary_offset - gap), 1e-12);
   EXPECT_LE(std::abs(score.wrinkled_area - kSide * kSide), 1e-12);
@@ -71,13 +71,13 @@ TEST(Scoring, GapIsMeasuredAlongTheNormalOfAnInclinedPlane) {
   const Snapshot end = snapshot(mesh, [&](double u, double v) -> Vector3d {
     return mold.point(u, v) + normal * (gap + 0.5 * kThickness);
   });
-  for (const double separation : separations(end, mold, kThickness))
-    EXPECT_LE(std::abs(separation - gap), 1e-12);
+  for (const double gap : gaps(end, mold, kThickness))
+    EXPECT_LE(std::abs(gap - gap), 1e-12);
 }
 
 TEST(Scoring, PenetrationCountsAsContact) {
   const Mesh mesh = rectangle_mesh(kSide, kSide, 0.05);
-  for (const double gap : separations(flat(mesh, {0, 0, -0.001}), Mold(PlaneShape{0}, kExtent), kThickness)) {
+  for (const double gap : gaps(flat(mesh, {0, 0, -0.001}), Mold(PlaneShape{0}, kExtent), kThickness)) {
     EXPECT_EQ(gap, 0.0);
   }
 }
@@ -92,8 +92,8 @@ TEST(Scoring, RmsOfALinearGapIsItsAreaMean) {
   });
   const double mean_square = g * g * (1.0 / 3 + h * h / (6 * kSide * kSide));
   const Score score = score_on_plane(mesh, end);
-  EXPECT_LE(std::abs(score.rms_separation - std::sqrt(mean_square)), 1e-9 * g);
-  EXPECT_LE(std::abs(score.max_separation - g), 1e-12);
+  EXPECT_LE(std::abs(score.rms_gap - std::sqrt(mean_square)), 1e-9 * g);
+  EXPECT_LE(std::abs(score.max_gap - g), 1e-12);
 }
 
 TEST(Scoring, ShiftedPlyIsOffByItsShift) {
@@ -159,7 +159,7 @@ Score score_flat_over(const Mold& mold, double warp_strain, double weft_strain) 
 
 TEST(Scoring, TautFlatPlyOverABowlIsBridgingNotWrinkled) {
   const Score score = score_flat_over(paraboloid(2, 2), 0.001, 0.001);
-  EXPECT_GT(score.max_separation, 0.02);
+  EXPECT_GT(score.max_gap, 0.02);
   EXPECT_EQ(score.wrinkled_area, 0.0);
 }
 
@@ -201,17 +201,17 @@ TEST(Scoring, ShearAndStrainCountOnlyBeyondTheirLimits) {
 
 TEST(Scoring, ObjectiveIsTheWeightedSumOfPartsOverTheirReferences) {
   Score score;
-  score.max_separation = 0.012;
-  score.rms_separation = 0.003;
+  score.max_gap = 0.012;
+  score.rms_gap = 0.003;
   score.wrinkled_area = 0.0004;
   score.max_boundary_offset = 0.028;
   score.rms_boundary_offset = 0.010;
   score.duration = 10;
   ScoreOptions options;
-  options.weight_rms_separation = 2;
+  options.weight_rms_gap = 2;
   options.weight_duration = 0.1;
   EXPECT_LE(std::abs(objective(score, options, 0.04) - (12 + 2 * 3 + 1 + 14 + 5 + 1)), 1e-12);
-  options.weight_max_separation = 0;
+  options.weight_max_gap = 0;
   EXPECT_LE(std::abs(objective(score, options, 0.04) - (2 * 3 + 1 + 14 + 5 + 1)), 1e-12);
 }
 
@@ -223,7 +223,7 @@ TEST(Scoring, NotFiniteInputIsAFailureWithItsPlace) {
   EXPECT_FALSE(score.valid);
   EXPECT_EQ(score.reason, "not finite: position of node 7");
   EXPECT_EQ(score.objective, kFailedObjective);
-  EXPECT_EQ(score.max_separation, 0.0);
+  EXPECT_EQ(score.max_gap, 0.0);
 
   end = flat(mesh, {0, 0, 0});
   end.weft_strain[4] = kNan;

@@ -15,10 +15,10 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-ReportRow row(const std::string& name, double separation) {
+ReportRow row(const std::string& name, double gap) {
   ReportRow result{name, {}};
   result.score.valid = true;
-  result.score.max_separation = separation;
+  result.score.max_gap = gap;
   return result;
 }
 
@@ -52,7 +52,7 @@ TEST(HtmlReport, BestValidRowStandsOutAndReferencesDoNot) {
   PlanReport report;
   ReportRow published = row("published", 0.0001);
   published.reference = true;
-  published.score.rms_separation = kNan;
+  published.score.rms_gap = kNan;
   ReportRow failed{"failed", failed_score("diverged")};
   report.rows = {published, row("uniform", 0.0122), row("optimised", 0.0034), failed};
   const std::string page = html_report(report);

@@ -54,7 +54,7 @@ DrapePanel panel(double gap) {
   result.mesh = rectangle_mesh(0.2, 0.2, 0.02);
   for (const auto& uv : result.mesh.rest) {
     result.position.emplace_back(uv.x(), uv.y(), 0.0);
-    result.separation.push_back(gap * (uv.x() + 0.1) / 0.2);
+    result.gap.push_back(gap * (uv.x() + 0.1) / 0.2);
   }
   result.boundary = {{-0.1, -0.1, 0}, {0.1, -0.1, 0}, {0.1, 0.1, 0}, {-0.1, 0.1, 0}, {-0.1, -0.1, 0}};
   result.pads = {{0, 0, 0}, {0.05, 0.05, 0}};
@@ -162,8 +162,8 @@ TEST(Picture, ValuesThatAreNotFiniteDoNotReachTheFile) {
   DrapePanel broken = panel(0.005);
   broken.position[5].x() = kNan;
   broken.position[6].y() = 1e300;
-  broken.separation[7] = kNan;
-  broken.separation[8] = std::numeric_limits<double>::infinity();
+  broken.gap[7] = kNan;
+  broken.gap[8] = std::numeric_limits<double>::infinity();
   broken.pads[0].z() = kNan;
   const std::string svg = drape_picture({broken}, kExtent);
   EXPECT_EQ(markup_fault(svg), "");
@@ -178,7 +178,7 @@ TEST(Picture, PlyOnTheMoldAndBarePanelsAreDrawn) {
   EXPECT_EQ(markup_fault(svg), "");
   EXPECT_FALSE(contains(svg, "prescribed boundary"));
   EXPECT_THROW(drape_picture({}, kExtent), std::invalid_argument);
-  bare.separation.pop_back();
+  bare.gap.pop_back();
   EXPECT_THROW(drape_picture({bare}, kExtent), std::invalid_argument);
 }
 

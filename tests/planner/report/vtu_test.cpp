@@ -72,9 +72,9 @@ TEST(Vtu, PlyReadsBackBitForBit) {
   Snapshot snapshot = flat(mesh);
   snapshot.director.assign(mesh.rest.size(), Eigen::Vector3d(0, 0.6, 0.8));
   snapshot.shear = {0.1, -0.2, 1e-300, 4, 5, std::numeric_limits<double>::denorm_min()};
-  std::vector<double> separation(mesh.rest.size());
-  for (size_t k = 0; k < separation.size(); ++k) separation[k] = 0.1 / double(k + 1);
-  const std::string text = written([&](const auto& file) { write_vtu(file, mesh, snapshot, separation); });
+  std::vector<double> gap(mesh.rest.size());
+  for (size_t k = 0; k < gap.size(); ++k) gap[k] = 0.1 / double(k + 1);
+  const std::string text = written([&](const auto& file) { write_vtu(file, mesh, snapshot, gap); });
 
   EXPECT_NE(text.find("NumberOfPoints=\"12\" NumberOfCells=\"6\""), std::string::npos);
   const std::vector<double> points = values_of<double>(text, "points");
@@ -82,7 +82,7 @@ TEST(Vtu, PlyReadsBackBitForBit) {
   for (size_t node = 0; node < 12; ++node) {
     for (size_t k = 0; k < 3; ++k) EXPECT_EQ(points[3 * node + k], snapshot.position[node][Eigen::Index(k)]);
   }
-  EXPECT_EQ(values_of<double>(text, "separation"), separation);
+  EXPECT_EQ(values_of<double>(text, "gap"), gap);
   EXPECT_EQ(values_of<double>(text, "shear"), snapshot.shear);
   EXPECT_EQ(values_of<double>(text, "director").size(), 36u);
   const auto connectivity = values_of<std::int64_t>(text, "connectivity");
@@ -95,7 +95,7 @@ TEST(Vtu, PlyReadsBackBitForBit) {
 TEST(Vtu, FieldsThatAreAbsentAreNotWritten) {
   const Mesh mesh = rectangle_mesh(0.03, 0.02, 0.01);
   const std::string text = written([&](const auto& file) { write_vtu(file, mesh, flat(mesh)); });
-  for (const char* name : {"separation", "director", "shear", "warp_strain", "weft_strain"}) {
+  for (const char* name : {"gap", "director", "shear", "warp_strain", "weft_strain"}) {
     EXPECT_EQ(text.find(name), std::string::npos) << name;
   }
 }

@@ -24,7 +24,7 @@ Outcome outcome_of(double objective) {
   Outcome outcome;
   outcome.score.valid = true;
   outcome.score.objective = objective;
-  outcome.score.max_separation = objective / 3;
+  outcome.score.max_gap = objective / 3;
   outcome.report.steps = 12345678901;
   outcome.report.message = "end of the schedule";
   outcome.report.state_hash = 0xfedcba9876543210ULL;
@@ -81,7 +81,7 @@ TEST_F(EvaluationLogFile, ServesAKnownScheduleAfterReopeningToTheLastBit) {
   EXPECT_TRUE(o.cached);
   EXPECT_TRUE(o.score.valid);
   EXPECT_EQ(o.score.objective, 0.02 * third);
-  EXPECT_EQ(o.score.max_separation, 0.02 * third / 3);
+  EXPECT_EQ(o.score.max_gap, 0.02 * third / 3);
   EXPECT_EQ(o.report.steps, 12345678901);
   EXPECT_EQ(o.report.state_hash, 0xfedcba9876543210ULL);
   EXPECT_EQ(o.report.message, "end of the schedule");

@@ -29,7 +29,7 @@ StudySubject short_strip() {
 StudyRun run_of(double gap, double offset) {
   StudyRun run;
   run.valid = true;
-  run.figures = {{"separation", gap}, {"boundary_offset", offset}};
+  run.figures = {{"gap", gap}, {"boundary_offset", offset}};
   run.places = {{0, 0, 0}, {1, 0, 0}};
   run.shear_deg = {0, 2};
   return run;
@@ -37,7 +37,7 @@ StudyRun run_of(double gap, double offset) {
 
 TEST(StudyErrors, AreTheLargestOfTheRuns) {
   const auto errors = study_errors({run_of(1.1, 2), run_of(1, 2.5)}, {run_of(1, 2), run_of(1, 2)}, true);
-  EXPECT_NEAR(errors.at("separation"), 0.1, 1e-15);
+  EXPECT_NEAR(errors.at("gap"), 0.1, 1e-15);
   EXPECT_NEAR(errors.at("boundary_offset"), 0.5, 1e-15);
   EXPECT_NEAR(errors.at("relative"), 0.25, 1e-15);
   EXPECT_EQ(errors.at("places"), 0);
