@@ -19,7 +19,7 @@ struct FreeCorner {
   bool converged = false;  ///< the last Newton step was below 1e-12 of the shorter edge
 };
 
-/// Minimises the fibre strain energy over the free corner's (x, y). Seed, Eq. (3), from the parallelogram.
+/// Minimises the fibre strain energy over the free corner's (x, y). [Krogh], Eq. (3), from the parallelogram.
 FreeCorner place_free_corner(const Mold& mold, const Cell& cell);
 
 }  // namespace drapeplan

@@ -15,7 +15,7 @@ struct Jet {
   double zxxx = 0, zxxy = 0, zxyy = 0, zyyy = 0;  ///< [1/m^2]
 };
 
-/// z = sum of coefficient * x^i * y^j; a coefficient has the unit m^(1-i-j). Seed, Eq. (1).
+/// z = sum of coefficient * x^i * y^j; a coefficient has the unit m^(1-i-j). [Krogh], Eq. (1).
 struct PolynomialShape {
   struct Term {
     int i = 0, j = 0;

@@ -11,7 +11,7 @@ enum class Precision { double_lanes, single_lanes };
 struct FemOptions {
   double mesh_size = 0.010;  ///< largest element edge [m]
   int section_points = 3;    ///< through the thickness: 1, 3 or 5
-  double mass_scaling = 20;  ///< factor on the mass; gravity acts on the unscaled mass (seed: up to 20)
+  double mass_scaling = 20;  ///< factor on the mass; gravity acts on the unscaled mass ([Krogh]: up to 20)
   /// The step may be this many times longer: mass is added to the stretch of fibres alone.
   double selective_scaling = 1;
   double target_step = 0;    ///< mass is added where the step would be smaller [s]; 0: nowhere

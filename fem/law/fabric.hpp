@@ -40,10 +40,10 @@ struct StressTable {
 /// How the shear stress of the table is measured.
 enum class ShearMeasure {
   conjugate,  ///< stress times rate of the shear angle is power per volume
-  force,      ///< shear force per length over thickness, F_sh / t of the seed's Eq. (10); conjugate / cos g
+  force,      ///< shear force per length over thickness, F_sh / t of [Krogh], Eq. (10); conjugate / cos g
 };
 
-/// Ply material. Modes are decoupled, as in the seed ("Transient Nonlinear Finite Element Model").
+/// Ply material. Modes are decoupled, as in [Krogh] ("Transient Nonlinear Finite Element Model").
 struct Fabric {
   double thickness = 0;      ///< [m]
   double areal_density = 0;  ///< [kg/m^2]

@@ -125,10 +125,10 @@ double fma_peak() {
   constexpr size_t kChains = 12;  // more than the latency of an FMA times the number of its pipes
   double best = 0;
   for (int run = 0; run < kRuns; ++run) {
-    const volatile double seed = 0.999999;  // not known to the compiler
-    const Lanes factor(seed), term(1 - seed);
+    const volatile double below_one = 0.999999;  // not known to the compiler
+    const Lanes factor(below_one), term(1 - below_one);
     std::array<Lanes, kChains> chain;
-    for (size_t k = 0; k < kChains; ++k) chain[k] = Lanes(seed + double(k));
+    for (size_t k = 0; k < kChains; ++k) chain[k] = Lanes(below_one + double(k));
     const auto start = std::chrono::steady_clock::now();
     for (int round = 0; round < kRounds; ++round) {
       unroll<kChains>([&](auto k) { chain[k] = chain[k] * factor + term; });

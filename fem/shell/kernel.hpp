@@ -1,6 +1,6 @@
 // One-point director shell with fabric law: forces of one lane-block of elements.
 //
-// Source: seed, "Transient Nonlinear FE Model" (reduced integration, first-order shear deformation, nominal
+// Source: [Krogh], "Transient Nonlinear FE Model" (reduced integration, first-order shear deformation, nominal
 // stress over nominal strain along the fibres, decoupled modes, bending through section points). Differs:
 // total-Lagrangian with unit directors d instead of rotations, so rigid motion is exact.
 //

@@ -26,7 +26,7 @@ struct ReleasedSprings {
 };
 
 /// Node-to-mold contact: springs with dashpots. The gap is the distance to the tangent plane at the foot of
-/// the perpendicular (one step of Newton's method, 1e-11 m and 1e-6 rad on the seed's mold); the force acts
+/// the perpendicular (one step of Newton's method, 1e-11 m and 1e-6 rad on the article's mold); the force acts
 /// along the normal there, and presses only: max(0, -stiffness gap - damping v_n). With a coefficient also
 /// anchored Coulomb friction: a node is held by an equal spring and dashpot at its anchor; where they would
 /// exceed coefficient times normal force, the anchor is dragged. A node that touches anew drops its anchor

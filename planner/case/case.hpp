@@ -18,14 +18,14 @@ namespace drapeplan {
 
 /// Where the commanded heights of a schedule end.
 enum class Aim {
-  mapped,     ///< joints above the mapped targets (the seed)
+  mapped,     ///< joints above the mapped targets ([Krogh])
   reachable,  ///< joints above the places that the rig can reach (see planner/reach/reach.hpp)
 };
 
 /// From when the delay of a wave counts.
 enum class DelayFrom {
-  start,  ///< from the start of the group before (5.1 s for the seed's wave)
-  end,    ///< from the end of the group before (12.1 s for the seed's wave)
+  start,  ///< from the start of the group before (5.1 s for the article's wave)
+  end,    ///< from the end of the group before (12.1 s for the article's wave)
 };
 
 /// The two baseline strategies and what they share.

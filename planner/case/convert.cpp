@@ -30,7 +30,7 @@ CurveFields curve_fields(const StressTable& table, const std::string& source) {
   return fields;
 }
 
-/// Rate alpha of mass damping [1/s]. Seed, Eqs. (4) and (5), per width: the lowest frequency of a strip.
+/// Rate alpha of mass damping [1/s]. [Krogh], Eqs. (4) and (5), per width: the lowest frequency of a strip.
 double alpha_of(const DampingFields& d, const std::optional<MaterialFields>& material) {
   if (d.by == 0 || !material) return d.alpha;
   constexpr double kFirstRoot = 1.8751040687119611;  // of cos x cosh x = -1: clamped-free beam

@@ -49,7 +49,7 @@ struct MaterialFields {
   double rate_floor = Fabric().rate_floor, rate_filter = Fabric().rate_filter;
 };
 
-/// Mass damping as the file states it: seed, Eqs. (4) and (5).
+/// Mass damping as the file states it: [Krogh], Eqs. (4) and (5).
 struct DampingFields {
   int by = 0;  ///< 0 alpha, 1 strip
   double alpha = 0;

@@ -1,6 +1,6 @@
 // Draping strategies: who goes down when. All are pure functions from a few numbers to a schedule.
 //
-// A sequence has two parts (seed, "Motion Planning"): the preshape, a straight line of constant velocity to
+// A sequence has two parts ([Krogh], "Motion Planning"): the preshape, a straight line of constant velocity to
 // the same height above every target, and then one stroke per gripper down to its target. A strategy is only
 // the choice of the strokes; `to_schedule` does the rest.
 #pragma once
@@ -38,7 +38,7 @@ struct Strokes {
 };
 
 enum class WaveDistance {
-  rings,    ///< round(Chebyshev distance / spacing): groups of grippers, as in the seed
+  rings,    ///< round(Chebyshev distance / spacing): groups of grippers, as in [Krogh]
   blended,  ///< (1 - roundness) * Chebyshev + roundness * Euclid, continuous
 };
 

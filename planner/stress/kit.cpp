@@ -18,7 +18,7 @@
 namespace drapeplan {
 namespace {
 
-constexpr double kThickness = 3e-4, kArealDensity = 0.314;  // of the seed's prepreg [m], [kg/m^2]
+constexpr double kThickness = 3e-4, kArealDensity = 0.314;  // of the article's prepreg [m], [kg/m^2]
 
 /// A file in the folder for temporary files, gone when it goes out of scope.
 class TemporaryFile {
@@ -187,7 +187,7 @@ StressSetup corner_drape(double mesh_size) {
   scene.position = {0.1, 0.1};
   scene.gravity = kGravity;
   scene.damping = 200;  // nearly critical for the ply between its pads
-  // Seed, Eq. (1).
+  // [Krogh], Eq. (1).
   scene.mold = Mold(PolynomialShape{{{1, 0, 1.004},
                                      {0, 1, 1.089},
                                      {2, 0, -3.667},

@@ -54,7 +54,7 @@ StressScene strip_scene(std::string group, std::string name, const StripSetup& s
 /// @throws std::invalid_argument with all errors.
 StressSetup from_case(const std::string& text, const std::vector<std::string>& overrides = {});
 
-/// A square woven ply under 2 x 2 grippers over a corner of the seed's mold, and a schedule that lays it
+/// A square woven ply under 2 x 2 grippers over a corner of the article's mold, and a schedule that lays it
 /// down.
 StressSetup corner_drape(double mesh_size = 0.0125);
 /// Joints from one height above the mold to `depth` below their place on it. @param speed  factor on all

@@ -27,7 +27,7 @@ TEST(Cell, OnAPlaneTheFreeCornerClosesTheParallelogram) {
 }
 
 TEST(Cell, EdgesKeepTheirLengthWhereTheyCan) {
-  const Mold mold = seed_mold();
+  const Mold mold = article_mold();
   const Eigen::Vector3d base = mold.point(0.2, 0.1), first = mold.point(0.24, 0.1),
                         second = mold.point(0.2, 0.13);
   const Cell cell{base, first, second, (first - base).norm(), (second - base).norm()};
@@ -39,7 +39,7 @@ TEST(Cell, EdgesKeepTheirLengthWhereTheyCan) {
 }
 
 TEST(Cell, WhereEdgesCannotMeetTheEnergyIsSmallest) {
-  const Mold mold = seed_mold();
+  const Mold mold = article_mold();
   const Eigen::Vector3d base = mold.point(0.2, 0.1), first = mold.point(0.24, 0.1),
                         second = mold.point(0.2, 0.13);
   const Cell cell{base, first, second, 0.02, 0.02};  // 40 mm together do not span the 50 mm of the diagonal

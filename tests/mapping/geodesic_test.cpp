@@ -62,13 +62,13 @@ TEST(Geodesic, OnAPlaneItIsAStraightLine) {
 }
 
 TEST(Geodesic, OfNoStepsIsItsStart) {
-  const Geodesic line = shoot_geodesic(seed_mold(), {0.2, 0.2}, {1, 0}, 0.1, 0);
+  const Geodesic line = shoot_geodesic(article_mold(), {0.2, 0.2}, {1, 0}, 0.1, 0);
   ASSERT_EQ(line.points.size(), 1U);
   EXPECT_EQ(line.points[0].x(), 0.2);
 }
 
 TEST(Geodesic, BackwardsLeadsToTheStart) {
-  const Mold mold = seed_mold();
+  const Mold mold = article_mold();
   const Geodesic there = shoot_geodesic(mold, {0.1, 0.3}, {1, -0.5}, 0.001, 300);
   const Eigen::Vector3d& end = there.points.back();
   const Geodesic back = shoot_geodesic(mold, end.head<2>(), -there.end_direction.head<2>(), 0.001, 300);
@@ -83,7 +83,7 @@ TEST(Geodesic, DirectionOnASphereIsThatOfTheGreatCircle) {
 }
 
 TEST(Geodesic, DirectionOnTheSeedMoldLeadsThroughTheGoal) {
-  const Mold mold = seed_mold();
+  const Mold mold = article_mold();
   const Eigen::Vector2d start(0.225, 0.225);
   for (const Eigen::Vector2d& goal :
        {Eigen::Vector2d(0.45, 0.225), Eigen::Vector2d(0.225, 0.45), Eigen::Vector2d(0, 0.225),

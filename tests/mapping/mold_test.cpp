@@ -21,7 +21,7 @@ struct Scene {
 
 std::vector<Scene> all_shapes() {
   return {{"plane", inclined_plane(0.4)},
-          {"seed", seed_mold()},
+          {"article", article_mold()},
           {"quintic",
            Mold(PolynomialShape{{{5, 0, 3.0}, {2, 3, -7.0}, {0, 1, 0.3}, {1, 4, 2.0}}}, {{0, 0}, {1, 1}})},
           {"degree 9", Mold(PolynomialShape{{{6, 3, 5.0}, {0, 7, -2.0}, {4, 0, 0.3}}}, {{0, 0}, {1, 1}})},
@@ -77,7 +77,7 @@ TEST(Mold, BatchHeightsEqualTheJets) {
 }
 
 TEST(Mold, HeightsOfTheSeedMoldFollowItsEquation) {
-  const Mold mold = seed_mold();
+  const Mold mold = article_mold();
   const double x = 0.31, y = 0.12;
   const double z = 1.004 * x + 1.089 * y - 3.667 * x * x - 4.4 * x * y - 3.75 * y * y + 3.086 * x * x * x +
                    8.889 * x * x * y + 4.321 * y * y * y;
@@ -85,7 +85,7 @@ TEST(Mold, HeightsOfTheSeedMoldFollowItsEquation) {
 }
 
 TEST(Mold, GaussianCurvatureOfTheSeedMoldMatchesItsFigure) {
-  const CurvatureRange range = gaussian_curvature_range(seed_mold());
+  const CurvatureRange range = gaussian_curvature_range(article_mold());
   EXPECT_NEAR(range.smallest, -25.46, 0.01);
   EXPECT_NEAR(range.largest, 23.41, 0.01);
 }
@@ -128,7 +128,7 @@ TEST(Mold, ClosestPointUndoesAnOffsetAlongTheNormal) {
 }
 
 TEST(Mold, ClosestPointOfAFarPointIsNearerThanAnySample) {
-  const Mold mold = seed_mold();
+  const Mold mold = article_mold();
   std::mt19937 random(2);
   std::uniform_real_distribution<double> plan(0.0, 0.45), rise(0.0, 0.3);
   for (int k = 0; k < 50; ++k) {
@@ -154,7 +154,7 @@ TEST(Mold, ClosestPointWorksBesideTheDomainOfASphere) {
 
 TEST(Mold, ClosestPointSaysWhenThereIsNone) {
   EXPECT_FALSE(sphere({0, 0, 0}, 0.5).closest({0.8, 0, -0.6}).converged);
-  EXPECT_FALSE(seed_mold().closest({std::nan(""), 0, 0}).converged);
+  EXPECT_FALSE(article_mold().closest({std::nan(""), 0, 0}).converged);
 }
 
 TEST(Mold, HeightsBeyondTheEquatorAreNotNumbers) {

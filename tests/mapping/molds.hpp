@@ -8,8 +8,8 @@
 
 namespace drapeplan {
 
-/// Seed, Eq. (1).
-inline Mold seed_mold() {
+/// [Krogh], Eq. (1).
+inline Mold article_mold() {
   return Mold(PolynomialShape{{{1, 0, 1.004},
                                {0, 1, 1.089},
                                {2, 0, -3.667},

@@ -15,20 +15,20 @@ TEST(MappedPoint, IsExactAtNodesAndOnPlanes) {
   const Eigen::Vector3d expected(std::cos(0.4) * (0.0771 - 0.03), -0.0333 - 0.01,
                                  -std::sin(0.4) * (0.0771 - 0.03));
   EXPECT_LE((mapped_point(flat, plane, {0.0771, -0.0333}) - expected).norm(), 1e-14);
-  const Net net = seed_net(Generators::mid_sides, 0.01);
+  const Net net = article_net(Generators::mid_sides, 0.01);
   for (int j = 0; j < static_cast<int>(net.v.size()); j += 5) {
     for (int i = 0; i < static_cast<int>(net.u.size()); i += 5) {
-      const Eigen::Vector3d point = mapped_point(net, seed_mold(), {net.u[size_t(i)], net.v[size_t(j)]});
+      const Eigen::Vector3d point = mapped_point(net, article_mold(), {net.u[size_t(i)], net.v[size_t(j)]});
       EXPECT_LE((point - net.node(i, j)).norm(), 1e-14);
     }
   }
 }
 
 TEST(MappedPoint, AgreesBetweenCoarseAndFineNets) {
-  const Net coarse = seed_net(Generators::axes, 0.01), fine = seed_net(Generators::axes, 0.005);
+  const Net coarse = article_net(Generators::axes, 0.01), fine = article_net(Generators::axes, 0.005);
   for (double u = -0.2; u < 0.2025; u += 0.0137) {
     for (double v = -0.2; v < 0.2025; v += 0.0137) {
-      EXPECT_LE((mapped_point(coarse, seed_mold(), {u, v}) - mapped_point(fine, seed_mold(), {u, v})).norm(),
+      EXPECT_LE((mapped_point(coarse, article_mold(), {u, v}) - mapped_point(fine, article_mold(), {u, v})).norm(),
                 5e-5);
     }
   }
@@ -42,9 +42,9 @@ TEST(MappedPoint, WorksOnANetOfOneCell) {
 }
 
 TEST(MappedPoint, RefusesPointsOutsideThePly) {
-  const Net net = seed_net(Generators::axes, 0.02);
-  EXPECT_THROW(mapped_point(net, seed_mold(), {0.203, 0}), std::out_of_range);
-  EXPECT_THROW(mapped_point(net, seed_mold(), {0, std::nan("")}), std::out_of_range);
+  const Net net = article_net(Generators::axes, 0.02);
+  EXPECT_THROW(mapped_point(net, article_mold(), {0.203, 0}), std::out_of_range);
+  EXPECT_THROW(mapped_point(net, article_mold(), {0, std::nan("")}), std::out_of_range);
 }
 
 TEST(PrescribedBoundary, RunsAroundThePlyCounterClockwiseAndCloses) {
@@ -85,7 +85,7 @@ TEST(PrescribedBoundary, FollowsTheOutlineOfAPlyThatIsNoRectangle) {
 }
 
 TEST(PrescribedBoundary, OfAnOutlineThatIsTheRectangleLiesOnThatOfTheRectangle) {
-  const Mold mold = seed_mold();
+  const Mold mold = article_mold();
   Ply ply{0.4, 0.4, {0.225, 0.225}, 0};
   const MappingOptions options{Generators::axes, {0.225, 0.225}, {0, 0}, 0.01};
   const Net net = map_ply(mold, ply, options);

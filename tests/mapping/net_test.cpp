@@ -195,9 +195,9 @@ TEST(Net, OnAnObliqueCylinderShearVanishesWithSecondOrder) {
 }
 
 TEST(Net, FibresKeepTheirFlatLengthAndNodesLieOnTheMold) {
-  const Mold mold = seed_mold();
+  const Mold mold = article_mold();
   for (const Generators generators : kAllGenerators) {
-    const Net net = seed_net(generators);
+    const Net net = article_net(generators);
     EXPECT_TRUE(net.converged);
     EXPECT_LE(largest_edge_strain(net), 1e-11);
     for (const Eigen::Vector3d& node : net.nodes) {
@@ -218,7 +218,7 @@ TEST(Net, ShearOnTheSeedMoldForTheThreeGenerators) {
                   {Generators::axes, 18.787, 7.354},
                   {Generators::mid_sides, 13.733, 3.111}};
   for (const auto& e : expected) {
-    const std::vector<double> shear = shear_field(seed_net(e.generators));
+    const std::vector<double> shear = shear_field(article_net(e.generators));
     EXPECT_NEAR(largest(shear) / kDegree, e.largest, 0.001);
     EXPECT_NEAR(mean(shear) / kDegree, e.mean, 0.001);
   }
@@ -226,10 +226,10 @@ TEST(Net, ShearOnTheSeedMoldForTheThreeGenerators) {
 
 TEST(Net, PlacesConvergeWithSecondOrderOnTheSeedMold) {
   for (const Generators generators : kAllGenerators) {
-    const std::vector<Eigen::Vector3d> fine = mapped_corners(seed_net(generators, 0.405 / 256));
+    const std::vector<Eigen::Vector3d> fine = mapped_corners(article_net(generators, 0.405 / 256));
     double previous = 0;
     for (const int cells : {16, 32, 64}) {
-      const std::vector<Eigen::Vector3d> corners = mapped_corners(seed_net(generators, 0.405 / cells));
+      const std::vector<Eigen::Vector3d> corners = mapped_corners(article_net(generators, 0.405 / cells));
       // Against a reference of 256 cells, errors h^2 - h_ref^2: the slopes below allow for it.
       const double error = (corners[2] - fine[2]).norm();
       if (cells > 16) {
@@ -271,11 +271,11 @@ TEST(Net, TurningACylinderWithItsPlyChangesNothing) {
 }
 
 TEST(Net, ExchangingXAndYExchangesWarpAndWeft) {
-  PolynomialShape mirrored = std::get<PolynomialShape>(seed_mold().shape());
+  PolynomialShape mirrored = std::get<PolynomialShape>(article_mold().shape());
   for (PolynomialShape::Term& term : mirrored.terms) std::swap(term.i, term.j);
-  const Mold mold(mirrored, seed_mold().extent());
+  const Mold mold(mirrored, article_mold().extent());
   for (const Generators generators : {Generators::axes, Generators::mid_sides}) {
-    const Net net = seed_net(generators, 0.01);
+    const Net net = article_net(generators, 0.01);
     const Net other =
         map_ply(mold, {0.405, 0.405, {0.225, 0.225}, 0}, {generators, {0.225, 0.225}, {0, 0}, 0.01});
     const std::vector<double> a = shear_field(net), b = shear_field(other);
@@ -288,12 +288,12 @@ TEST(Net, ExchangingXAndYExchangesWarpAndWeft) {
 }
 
 TEST(Net, MidSideGeneratorsPassTheMidSides) {
-  const Net net = map_ply(seed_mold(), {0.52, 0.52, {0.225, 0.225}, 0},
+  const Net net = map_ply(article_mold(), {0.52, 0.52, {0.225, 0.225}, 0},
                           {Generators::mid_sides, {0.225, 0.225}, {0, 0}, 0.002});
   const int middle = static_cast<int>(net.u.size()) / 2;
   const Eigen::Vector2d goals[] = {{0.45, 0.225}, {0, 0.225}, {0.225, 0.45}, {0.225, 0}};
   for (int k = 0; k < 4; ++k) {
-    const Eigen::Vector3d goal = seed_mold().point(goals[k].x(), goals[k].y());
+    const Eigen::Vector3d goal = article_mold().point(goals[k].x(), goals[k].y());
     double nearest = 1;
     for (size_t n = 1; n < net.u.size(); ++n) {
       const int m = static_cast<int>(n);
@@ -307,8 +307,8 @@ TEST(Net, MidSideGeneratorsPassTheMidSides) {
 }
 
 TEST(Net, MidSidesFollowAPlyTurnedByARightAngle) {
-  const Net net = seed_net(Generators::mid_sides, 0.01);
-  const Net turned = map_ply(seed_mold(), {0.405, 0.405, {0.225, 0.225}, kPi / 2},
+  const Net net = article_net(Generators::mid_sides, 0.01);
+  const Net turned = map_ply(article_mold(), {0.405, 0.405, {0.225, 0.225}, kPi / 2},
                              {Generators::mid_sides, {0.225, 0.225}, {0, 0}, 0.01});
   const int last = static_cast<int>(net.u.size()) - 1;  // (u, v) of the turned ply is (y, -x)
   for (int j = 0; j <= last; ++j) {
@@ -320,7 +320,7 @@ TEST(Net, MidSidesFollowAPlyTurnedByARightAngle) {
 
 TEST(Net, ThePlyMayStickOutOfTheMold) {
   const Net net =
-      map_ply(seed_mold(), {0.3, 0.3, {0.4, 0.3}, 0}, {Generators::axes, {0.4, 0.3}, {0, 0}, 0.01});
+      map_ply(article_mold(), {0.3, 0.3, {0.4, 0.3}, 0}, {Generators::axes, {0.4, 0.3}, {0, 0}, 0.01});
   EXPECT_TRUE(net.converged);
   EXPECT_GT(mapped_corners(net)[1].x(), 0.45);
 }

@@ -6,9 +6,9 @@
 
 namespace drapeplan {
 
-/// The 405 mm ply on the seed's mold.
-inline Net seed_net(Generators generators, double cell_size = 0.005) {
-  return map_ply(seed_mold(), {0.405, 0.405, {0.225, 0.225}, 0},
+/// The 405 mm ply on the article's mold.
+inline Net article_net(Generators generators, double cell_size = 0.005) {
+  return map_ply(article_mold(), {0.405, 0.405, {0.225, 0.225}, 0},
                  {generators, {0.225, 0.225}, {0, 0}, cell_size});
 }
 

@@ -1,8 +1,8 @@
 // Two shear tests of fabrics against the kinematics and the power balance of inextensible fibres.
 //
-// Bias extension (H = 270 mm between the grips, W = 120 mm, fibres at +-45 degrees; seed, "Bias-extension
+// Bias extension (H = 270 mm between the grips, W = 120 mm, fibres at +-45 degrees; [Krogh], "Bias-extension
 // Test"): triangles at the grips stay rigid, the middle shears by g, the zones between by g / 2, with
-//   g = 90 deg - 2 acos((L0 + d) / (sqrt(2) L0)),  L0 = H - W                            (seed, Eq. (8))
+//   g = 90 deg - 2 acos((L0 + d) / (sqrt(2) L0)),  L0 = H - W                            ([Krogh], Eq. (8))
 //   F (H - W) (cos(g/2) - sin(g/2)) / 2 = W (2 H - 3 W) / 2 C(g) + W^2 / 2 C(g/2),  C = t tau(g)
 // Mesh lines run through the specimen's corners, so they run along the borders of the zones: the exact
 // solution lies in the mesh's space.

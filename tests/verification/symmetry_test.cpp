@@ -212,7 +212,7 @@ TEST(Symmetry, ASheetOfAWovenLawTouchesDownOnADomeTheSame) {
   expect_the_same(scene, 0.008, 1e-11);
 }
 
-/// A 3x3 rig with interlinks over the seed's mold, coarse and fast.
+/// A 3x3 rig with interlinks over the article's mold, coarse and fast.
 Scene rig_scene() {
   Scene scene = test::middle_drape(0.205, 0.02);
   scene.rig->fixed = {2, 3};

@@ -23,7 +23,7 @@ Curve times(const Curve& curve, double factor) {
   return out;
 }
 
-/// The woven law of the tests with the rates of the seed's prepreg: 1e-15 to 1e-3 / s along the fibres.
+/// The woven law of the tests with the rates of the article's prepreg: 1e-15 to 1e-3 / s along the fibres.
 Fabric rated_fabric() {
   Fabric fabric = test::woven_fabric();
   const Curve tension = fabric.tension.slowest(), compression = fabric.compression.slowest(),

@@ -1,4 +1,4 @@
-// Drapes with a rig over the seed's mold, coarse and fast, that several tests share.
+// Drapes with a rig over the article's mold, coarse and fast, that several tests share.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ inline Scene rig_drape(int columns, double spacing, double joint_offset, double 
   scene.position = {place, place};
   scene.gravity = 9.81;
   scene.damping = 22;
-  scene.mold = seed_mold();
+  scene.mold = article_mold();
   scene.friction = 1.5;
   return scene;
 }

@@ -23,7 +23,7 @@ inline Fabric linear_fabric(double E, double G, double G13) {
   return fabric;
 }
 
-/// A fabric with the seed's traits: convex tension, soft compression, shear with plateau and locking.
+/// A fabric with the article's traits: convex tension, soft compression, shear with plateau and locking.
 inline Fabric woven_fabric() {
   Fabric fabric = linear_fabric(0, 0, 2e5);
   fabric.tension = Curve{{0, 0.001, 0.003, 0.0067}, {0, 5.6e6, 23.5e6, 66.7e6}};

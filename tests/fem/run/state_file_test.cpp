@@ -54,7 +54,7 @@ Scene strip() {
   return scene;
 }
 
-/// A 2x2 rig with interlinks over the corner of the seed's mold, with friction and rates; one pad lets go.
+/// A 2x2 rig with interlinks over the corner of the article's mold, with friction and rates; one pad lets go.
 Scene drape() {
   Scene scene = test::corner_drape(0.02);
   scene.fabric = rated_fabric();

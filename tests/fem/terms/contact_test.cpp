@@ -35,7 +35,7 @@ struct Touch {
 };
 
 TEST(Contact, MeasuresGapAndNormalAsTheClosestPointDoes) {
-  for (const Mold& mold : {seed_mold(), sphere({0, 0, 0}, 0.2), cylinder({0, 0, 0}, 0.3, 0.05)}) {
+  for (const Mold& mold : {article_mold(), sphere({0, 0, 0}, 0.2), cylinder({0, 0, 0}, 0.3, 0.05)}) {
     constexpr size_t kPoints = 400;
     Touch touch(mold, kPoints);
     std::mt19937 random(5);
@@ -64,7 +64,7 @@ TEST(Contact, MeasuresGapAndNormalAsTheClosestPointDoes) {
 }
 
 TEST(Contact, DoesNoWorkOnANodeThatIsDraggedAroundALoop) {
-  const Mold mold = seed_mold();
+  const Mold mold = article_mold();
   Touch touch(mold);
   constexpr int kPoints = 20000;
   const auto place = [&](double turn) {  // a loop at 54 degrees of slope, deeper on one side
@@ -256,7 +256,7 @@ TEST(Start, OnTheMoldTouchesItFlatInItsTangentPlane) {
   Scene scene;
   scene.mesh = rectangle_mesh(0.04, 0.04, 0.02);
   scene.fabric = test::linear_fabric(1e9, 1e8, 1e7);
-  scene.mold = seed_mold();
+  scene.mold = article_mold();
   scene.position = {0.06, 0.08};
   scene.angle = 0.4;
   scene.start = Start::on_mold;

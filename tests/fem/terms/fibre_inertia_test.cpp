@@ -292,7 +292,7 @@ TEST(FibreInertia, IsBorneByRectanglesAlongTheFibresOnly) {
   EXPECT_GE(ply.borne.size() - others, 30U);
 }
 
-/// 3x3 grippers with interlinks over the middle of the seed's mold, the middle one fixed, with friction.
+/// 3x3 grippers with interlinks over the middle of the article's mold, the middle one fixed, with friction.
 /// Masses and time are scaled as in the shipped cases.
 Scene drape(double selective) {
   Scene scene = test::middle_drape(0.205, 0.017);

@@ -1,4 +1,4 @@
-// Mass damping stated by a strip: seed, Eqs. (4) and (5).
+// Mass damping stated by a strip: [Krogh], Eqs. (4) and (5).
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-/// cases/elastica.json with another damping section: the seed's strip, 150 mm long, as a linear law.
+/// cases/elastica.json with another damping section: the article's strip, 150 mm long, as a linear law.
 CaseReading strip_case(const json& damping, const json& material = {}) {
   json document = json::parse(std::ifstream(fs::path(DRAPEPLAN_SOURCE_DIR) / "cases/elastica.json"));
   document["damping"] = damping;

@@ -9,8 +9,8 @@
 namespace drapeplan {
 namespace {
 
-/// The seed's 5x5 rig over a mold that rises along x and y.
-SequenceFrame seed_frame() {
+/// The article's 5x5 rig over a mold that rises along x and y.
+SequenceFrame article_frame() {
   SequenceFrame frame;
   frame.rig.columns = frame.rig.rows = 5;
   frame.rig.spacing = 0.1;
@@ -53,7 +53,7 @@ void expect_sound(const SequenceFrame& frame, const Strokes& strokes) {
 }
 
 TEST(Strategy, UniformIsOnePreshapeAndOneStrokeForAll) {
-  const SequenceFrame frame = seed_frame();
+  const SequenceFrame frame = article_frame();
   const Strokes strokes = uniform_strokes(frame);
   expect_sound(frame, strokes);
   const Schedule schedule = to_schedule(frame, strokes);
@@ -67,7 +67,7 @@ TEST(Strategy, UniformIsOnePreshapeAndOneStrokeForAll) {
 }
 
 TEST(Strategy, RigsThatDriveXAndYMoveInPlaneDuringThePreshapeOnly) {
-  SequenceFrame frame = seed_frame();
+  SequenceFrame frame = article_frame();
   EXPECT_TRUE(to_schedule(frame, uniform_strokes(frame)).plane_paths.empty());
   for (int g = 0; g < 25; ++g) {
     frame.start_xy.push_back(frame.rig.place(g));
@@ -85,7 +85,7 @@ TEST(Strategy, RigsThatDriveXAndYMoveInPlaneDuringThePreshapeOnly) {
 }
 
 TEST(Strategy, ReleaseCountsFromTheEndOfTheLastStroke) {
-  SequenceFrame frame = seed_frame();
+  SequenceFrame frame = article_frame();
   EXPECT_TRUE(to_schedule(frame, wave_strokes(frame)).release.empty());
   frame.rig.release_time = 0.25;
   const Schedule schedule = to_schedule(frame, wave_strokes(frame));
@@ -93,8 +93,8 @@ TEST(Strategy, ReleaseCountsFromTheEndOfTheLastStroke) {
   for (const auto& time : schedule.release) EXPECT_LE(std::abs(*time - (5 + 5.1 + 0.25)), 1e-9);
 }
 
-TEST(Strategy, SeedWaveHasGroupsOfOneEightAndSixteen) {
-  const SequenceFrame frame = seed_frame();
+TEST(Strategy, ArticleWaveHasGroupsOfOneEightAndSixteen) {
+  const SequenceFrame frame = article_frame();
   const Strokes strokes = wave_strokes(frame);
   expect_sound(frame, strokes);
   const auto at = [&](double t) {
@@ -109,13 +109,13 @@ TEST(Strategy, SeedWaveHasGroupsOfOneEightAndSixteen) {
 }
 
 TEST(Strategy, DelayFromTheEndGivesTheLongWave) {
-  SequenceFrame frame = seed_frame();
+  SequenceFrame frame = article_frame();
   frame.options.wave_delay_from = DelayFrom::end;
   EXPECT_LE(std::abs(last_end(wave_strokes(frame)) - 12.1), 1e-12);
 }
 
 TEST(Strategy, WaveFromACornerStartsThere) {
-  SequenceFrame frame = seed_frame();
+  SequenceFrame frame = article_frame();
   frame.options.wave_start = {-0.2, -0.2};
   const Strokes strokes = wave_strokes(frame);
   EXPECT_EQ(strokes.start[0], 0);
@@ -123,7 +123,7 @@ TEST(Strategy, WaveFromACornerStartsThere) {
 }
 
 TEST(Strategy, FastStrokesAreStretchedToTheLargestVelocityAndItIsSaid) {
-  SequenceFrame frame = seed_frame();
+  SequenceFrame frame = article_frame();
   EXPECT_EQ(stretched(frame, uniform_strokes(frame)), "");
   frame.options.uniform_duration = 0.01;
   frame.options.preshape_duration = 0.01;
@@ -132,7 +132,7 @@ TEST(Strategy, FastStrokesAreStretchedToTheLargestVelocityAndItIsSaid) {
 }
 
 TEST(Strategy, FlatTargetsAndNoPreshapeTimeStillGiveIncreasingKnots) {
-  SequenceFrame frame = seed_frame();
+  SequenceFrame frame = article_frame();
   frame.target_z.assign(25, 0.02);
   frame.options.preshape_duration = 0;
   frame.options.settle = 0;
@@ -149,7 +149,7 @@ TEST(Strategy, OneGripperHasAWaveToo) {
 }
 
 TEST(Strategy, EveryMemberOfBothFamiliesIsSoundAndNotTooLong) {
-  const SequenceFrame frame = seed_frame();
+  const SequenceFrame frame = article_frame();
   const WaveFamily waves(frame);
   for (unsigned seed = 0; seed < 200; ++seed) {
     const Strokes wave = waves.decode(random_point(WaveFamily::kDimension, seed));
@@ -167,7 +167,7 @@ TEST(Strategy, EveryMemberOfBothFamiliesIsSoundAndNotTooLong) {
 }
 
 TEST(Strategy, EncodedBaselinesAreTheSameSchedulesInEveryFamily) {
-  const SequenceFrame frame = seed_frame();
+  const SequenceFrame frame = article_frame();
   const WaveFamily waves(frame);
   WaveParameters flat = baseline_wave(frame);
   flat.delay = 0;
@@ -194,7 +194,7 @@ TEST(Strategy, EncodedBaselinesAreTheSameSchedulesInEveryFamily) {
 }
 
 TEST(Strategy, LowerPreshapeKeepsTheStartAndGoesFurtherDown) {
-  const SequenceFrame frame = seed_frame();
+  const SequenceFrame frame = article_frame();
   WaveParameters wave = baseline_wave(frame);
   wave.preshape_height = 0.01;
   const Schedule schedule = to_schedule(frame, wave_strokes(frame, wave));

@@ -24,7 +24,7 @@ struct Formulation {
 class ReachDerivatives : public testing::TestWithParam<Formulation> {
  protected:
   void SetUp() override {
-    problem_ = seed_problem(0.02);
+    problem_ = article_problem(0.02);
     problem_.rig.columns = 3;
     problem_.rig.rows = 2;
     problem_.rig.fixed = {2, 1};
@@ -62,7 +62,7 @@ class ReachDerivatives : public testing::TestWithParam<Formulation> {
     return (function(up) - function(down)) / (2 * kStep);
   }
 
-  ReachProblem problem_{RigOptions{}, seed_mold(), {}, {0, 0}};
+  ReachProblem problem_{RigOptions{}, article_mold(), {}, {0, 0}};
   std::unique_ptr<ReachNlp> nlp_;
   Eigen::VectorXd point_, multipliers_;
 };
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(AllFormulations, ReachDerivatives,
 
 // Second-order sufficient condition: the Lagrangian's Hessian is positive on the null space of the Jacobian.
 TEST(Reach, TheBestPositionOnTheSeedsMoldIsAStrictMinimum) {
-  ReachProblem problem = seed_problem();
+  ReachProblem problem = article_problem();
   problem.rig.tilt_limit = std::numbers::pi / 2;  // no inequalities
   const ReachNlp nlp(problem, ReachGoal::rms);
   std::vector<Eigen::Vector2d> places;

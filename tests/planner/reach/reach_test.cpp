@@ -44,14 +44,14 @@ double excess_angle(double spacing, double radius, double offset) {
 // ---- degenerate problems
 
 TEST(Reach, AnEmptyRigReachesEverything) {
-  const ReachResult result = solve_reach({RigOptions{}, seed_mold(), {}, {0, 0}});
+  const ReachResult result = solve_reach({RigOptions{}, article_mold(), {}, {0, 0}});
   EXPECT_TRUE(result.converged);
   EXPECT_EQ(result.floor_rms, 0);
   EXPECT_EQ(result.floor_max, 0);
 }
 
 TEST(Reach, WithoutInterlinksEveryTargetIsReached) {
-  ReachProblem problem = seed_problem(0.02);
+  ReachProblem problem = article_problem(0.02);
   problem.rig.interlinks = false;
   problem.rig.fixed.reset();
   const ReachResult result = solve_reach(problem);
@@ -174,11 +174,11 @@ TEST(Reach, APadSteeperThanItsTiltLimitStopsAtTheLimit) {
   EXPECT_EQ(solve_reach(problem).floor_rms, 0);
 }
 
-// ---- the seed's rig
+// ---- the article's rig
 
 TEST(Reach, TenRandomStartsOnTheSeedsMoldFindTheSameFloor) {
   for (const double offset : {0.0, 0.02}) {
-    const ReachResult result = solve_reach(seed_problem(offset), 10);
+    const ReachResult result = solve_reach(article_problem(offset), 10);
     ASSERT_TRUE(result.converged) << result.status;
     EXPECT_LE(result.start_spread, 1e-7);
     EXPECT_LE(result.start_spread_max, 1e-7);
@@ -188,7 +188,7 @@ TEST(Reach, TenRandomStartsOnTheSeedsMoldFindTheSameFloor) {
 }
 
 TEST(Reach, TheTwoFloorsBoundEachOther) {
-  const ReachProblem problem = seed_problem();
+  const ReachProblem problem = article_problem();
   const ReachResult result = solve_reach(problem);
   ASSERT_TRUE(result.converged) << result.status;
   double squares = 0, largest = 0;
@@ -205,8 +205,8 @@ TEST(Reach, TheTwoFloorsBoundEachOther) {
 }
 
 TEST(Reach, TheSolutionTurnsWithTheScene) {
-  // The seed's mold turned by 90 degrees about the vertical axis: x' = -y, y' = x.
-  const ReachProblem original = seed_problem();
+  // The article's mold turned by 90 degrees about the vertical axis: x' = -y, y' = x.
+  const ReachProblem original = article_problem();
   ReachProblem turned = original;
   PolynomialShape shape;
   for (const auto& [i, j, c] : std::get<PolynomialShape>(original.mold.shape()).terms) {
@@ -225,7 +225,7 @@ TEST(Reach, TheSolutionTurnsWithTheScene) {
 // chords of the fabric; the offset alone spoils it, and in proportion: joint distances change by offset times
 // curvature.
 TEST(Reach, TheSeedsFloorGrowsInProportionToTheJointOffset) {
-  ReachProblem problem = seed_problem();
+  ReachProblem problem = article_problem();
   const Ply ply{0.405, 0.405, problem.fixed_place, 0};
   MappingOptions options;
   options.start = problem.fixed_place;
@@ -262,16 +262,16 @@ TEST(Reach, InterlinksLongerThanTheSphereAreReportedAsInfeasible) {
 }
 
 TEST(Reach, UnsoundInputIsAStatus) {
-  ReachProblem problem = seed_problem();
+  ReachProblem problem = article_problem();
   problem.targets.pop_back();
   EXPECT_EQ(solve_reach(problem).status, "24 targets for 25 grippers");
-  problem = seed_problem();
+  problem = article_problem();
   problem.targets[7].x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(solve_reach(problem).status, "the mold is not defined at the target of gripper (3, 2)");
-  problem = seed_problem();
+  problem = article_problem();
   problem.rig.fixed = {6, 1};
   EXPECT_EQ(solve_reach(problem).status, "the fixed gripper is not one of the rig");
-  problem = seed_problem();
+  problem = article_problem();
   problem.rig.spacing = 0;
   const ReachResult result = solve_reach(problem);
   EXPECT_FALSE(result.converged);
@@ -281,7 +281,7 @@ TEST(Reach, UnsoundInputIsAStatus) {
 // ---- repeatability
 
 TEST(Reach, ConcurrentCallsGiveTheSameBits) {
-  const ReachProblem problem = seed_problem();
+  const ReachProblem problem = article_problem();
   const ReachResult alone = solve_reach(problem);
   std::vector<ReachResult> results(3);
   {
