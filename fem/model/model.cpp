@@ -409,7 +409,7 @@ std::vector<std::string> Model::term_names() const {
   return names;
 }
 
-ReportParts Model::report_parts() const {
+SummaryParts Model::summary_parts() const {
   return {.external = scene_.gravity || scene_.loads || scene_.rig || !scene_.grips.empty(),
           .contact = scene_.mold.has_value(),
           .friction = scene_.friction.has_value(),

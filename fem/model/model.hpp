@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fem/core/options.hpp"
-#include "fem/core/report.hpp"
+#include "fem/core/run_summary.hpp"
 #include "fem/core/start.hpp"
 #include "fem/core/term.hpp"
 #include "fem/law/fabric.hpp"
@@ -57,7 +57,7 @@ class Model {
   [[nodiscard]] const std::optional<FibreInertia>& fibre_inertia() const { return fibre_inertia_; }
   /// All that the scene has, in words; what is not named is not there.
   [[nodiscard]] std::vector<std::string> term_names() const;
-  [[nodiscard]] ReportParts report_parts() const;
+  [[nodiscard]] SummaryParts summary_parts() const;
 
   /// Stable step for all strains that the laws allow [s]; see stable_step() for that of a state.
   [[nodiscard]] double stable_dt() const { return stable_dt_; }

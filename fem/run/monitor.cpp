@@ -89,7 +89,7 @@ bool Monitor::holds_more(const State& state, double limit) {
   return stored.fabric + stored.hourglass > limit + rounding;
 }
 
-bool Monitor::look(State& state, RunReport& report) {
+bool Monitor::look(State& state, RunSummary& summary) {
   RunRecord& record = state.record;
   const Energies now = energies(model_, state);
   const double balance =
@@ -98,7 +98,7 @@ bool Monitor::look(State& state, RunReport& report) {
        {now.kinetic, now.internal, now.external, now.friction, now.contact, now.damping, now.constraint}) {
     record.energy = std::max(record.energy, std::abs(part));
   }
-  if (!std::isfinite(balance)) return fail(state, "energy is not finite", report);
+  if (!std::isfinite(balance)) return fail(state, "energy is not finite", summary);
   // Springs and viscosity start empty: what the ply gave it must have taken. A step that is too long pumps
   // energy out of it, and the books of that still close.
   const double largest = largest_energy(model_, state);
@@ -106,25 +106,25 @@ bool Monitor::look(State& state, RunReport& report) {
     return fail(
         state,
         "the ply gives energy that it never took: the step is unstable; lower step_safety or step_interval",
-        report);
+        summary);
   if (holds_more(state, now.internal + kHeldShare * largest))
     return fail(
         state,
         "the ply holds energy that it never took: the step was unstable; lower step_safety or step_interval",
-        report);
+        summary);
   if (std::min(now.contact, now.friction) < -kGivenShare * largest)
     return fail(state, "contact gives energy that it never took: the step is unstable; lower step_safety",
-                report);
+                summary);
   if (state.work[size_t(Book::added_mass)] > kGivenShare * largest)
     return fail(state, "mass added to fibres gives energy that it never took: lower selective_scaling",
-                report);
+                summary);
   record.balance = std::max(record.balance, std::abs(balance));
   for (size_t n = 0; n < size_t(model_.node_count()); ++n) {
     if (std::isfinite(state.x.x[n]) && std::isfinite(state.x.y[n]) && std::isfinite(state.x.z[n]) &&
         std::isfinite(state.v.x[n]) && std::isfinite(state.v.y[n]) && std::isfinite(state.v.z[n])) {
       continue;
     }
-    return fail(state, "not finite at node " + std::to_string(n), report);
+    return fail(state, "not finite at node " + std::to_string(n), summary);
   }
   double shear = 0;
   model_.shell().strains(state, strains_);
@@ -135,10 +135,10 @@ bool Monitor::look(State& state, RunReport& report) {
     }
   }
   if (!(std::max(record.fibre_strain, record.fibre_compression) <= kTornStrain))
-    return fail(state, "a fibre is torn or the step is unstable", report);
+    return fail(state, "a fibre is torn or the step is unstable", summary);
   for (const double angle : strains_.shear) shear = std::max(shear, std::abs(angle));
   if (!(shear <= kTabulatedShear))
-    return fail(state, "an element is sheared by more than 78.5 deg, where the law of shear ends", report);
+    return fail(state, "an element is sheared by more than 78.5 deg, where the law of shear ends", summary);
   if (!model_.scene().mold) return true;
   note_penetration(state);
   const double thickness = model_.scene().fabric.thickness;
@@ -147,10 +147,10 @@ bool Monitor::look(State& state, RunReport& report) {
     return fail(
         state,
         "the ply came " + millimetres(record.penetration) + " inside the mold: more than its thickness",
-        report);
+        summary);
   if (slid_ > overhang_ + thickness)
     return fail(state, "the ply slid " + millimetres(slid_) + " over the mold's edge, where its extent ends",
-                report);
+                summary);
   return true;
 }
 
@@ -175,11 +175,11 @@ void Monitor::note_penetration(State& state) {
   }
 }
 
-bool Monitor::fail(const State& state, const std::string& what, RunReport& report) {
+bool Monitor::fail(const State& state, const std::string& what, RunSummary& summary) {
   std::ostringstream text;
   text << what << ", seen at step " << state.step << ", t = " << state.time << " s";
-  report.status = RunStatus::diverged;
-  report.message = text.str();
+  summary.status = RunStatus::diverged;
+  summary.message = text.str();
   return false;
 }
 
@@ -192,16 +192,16 @@ void Monitor::compare_energies(State& state) const {
       std::max(record.hourglass_share, model_.shell().stored_energy(state).hourglass / internal);
 }
 
-void Monitor::close(State& state, RunReport& report) const {
-  report.energy = energies(model_, state);
-  report.energy.hourglass = model_.shell().stored_energy(state).hourglass;
-  report.energy.largest = state.record.energy;
+void Monitor::close(State& state, RunSummary& summary) const {
+  summary.energy = energies(model_, state);
+  summary.energy.hourglass = model_.shell().stored_energy(state).hourglass;
+  summary.energy.largest = state.record.energy;
   const double largest = largest_energy(model_, state);
-  report.energy.balance_error = largest > 0 ? state.record.balance / largest : 0;
-  report.largest_kinetic_ratio = state.record.kinetic_ratio;
-  report.largest_hourglass_share = state.record.hourglass_share;
-  report.largest_link_error = state.record.link_error;
-  report.largest_penetration = state.record.penetration;
+  summary.energy.balance_error = largest > 0 ? state.record.balance / largest : 0;
+  summary.largest_kinetic_ratio = state.record.kinetic_ratio;
+  summary.largest_hourglass_share = state.record.hourglass_share;
+  summary.largest_link_error = state.record.link_error;
+  summary.largest_penetration = state.record.penetration;
 }
 
 Snapshot take_snapshot(const Model& model, const State& state, const RigDrive& drive) {

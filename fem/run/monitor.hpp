@@ -1,7 +1,7 @@
-// Watches a run: books, finiteness, strains; turns what it saw into the report.
+// Watches a run: books, finiteness, strains; turns what it saw into the summary.
 #pragma once
 
-#include "fem/core/report.hpp"
+#include "fem/core/run_summary.hpp"
 #include "fem/run/simulate.hpp"
 #include "fem/run/workspace.hpp"
 
@@ -11,20 +11,20 @@ class Monitor {
  public:
   explicit Monitor(const Model& model);
 
-  /// Looks at a state and notes the worst in its record. Returns false, with the reason in the report, if the
+  /// Looks at a state and notes the worst in its record. Returns false, with the reason in the summary, if the
   /// run cannot go on.
-  bool look(State& state, RunReport& report);
+  bool look(State& state, RunSummary& summary);
 
   /// Kinetic and hourglass energy against internal energy, into the state's record.
   void compare_energies(State& state) const;
 
   /// What only the end tells, and the record.
-  void close(State& state, RunReport& report) const;
+  void close(State& state, RunSummary& summary) const;
 
  private:
   void note_penetration(State& state);
   bool holds_more(const State& state, double limit);
-  static bool fail(const State& state, const std::string& what, RunReport& report);
+  static bool fail(const State& state, const std::string& what, RunSummary& summary);
 
   const Model& model_;
   double overhang_ = 0;  ///< of the flat start over the mold's edge [m]

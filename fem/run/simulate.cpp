@@ -116,8 +116,8 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   const Clock clock(model, request);
   const RigDrive drive{request.schedule, model.scene().options.time_scaling};
   RunResult result;
-  RunReport& report = result.report;
-  report.parts = model.report_parts();
+  RunSummary& summary = result.summary;
+  summary.parts = model.summary_parts();
   State& state = result.state;
   state = first_state(model, request);
   const std::int64_t first_step = state.step, frames = request.observe ? request.frames : 0;
@@ -144,39 +144,39 @@ RunResult simulate(const Model& model, const RunRequest& request) {
     if (model.rig()) model.rig()->drift(state);
     advance_clock(state);
 
-    if (clock.crossed(state, kLooks)) running = monitor.look(state, report) && work.rig.converged;
+    if (clock.crossed(state, kLooks)) running = monitor.look(state, summary) && work.rig.converged;
     if (clock.crossed(state, kTenths) && clock.passed(state.time, kTenths) > 1)
       monitor.compare_energies(state);
     if (model.scene().rest) rests = at_rest(model, clock, state);
   }
 
   result.final = take_snapshot(model, state, drive);
-  if (running) monitor.close(state, report);
+  if (running) monitor.close(state, summary);
   if (running && clock.ended(state) && frame < frames) request.observe(result.final);
-  if (report.message.empty() && !std::isfinite(state.time)) {
-    report.status = RunStatus::diverged;
-    report.message = "the stable step is not finite: the steps before were unstable; after step " +
+  if (summary.message.empty() && !std::isfinite(state.time)) {
+    summary.status = RunStatus::diverged;
+    summary.message = "the stable step is not finite: the steps before were unstable; after step " +
                      std::to_string(state.step);
   }
-  if (!work.rig.converged && report.status == RunStatus::done) {
-    report.status = RunStatus::diverged;
-    report.message =
+  if (!work.rig.converged && summary.status == RunStatus::done) {
+    summary.status = RunStatus::diverged;
+    summary.message =
         "interlinks could not be kept at their length: pads are too fast, or the step is unstable; seen at "
         "step " +
         std::to_string(state.step) + ", t = " + std::to_string(state.time) + " s";
   }
-  if (report.message.empty()) {
+  if (summary.message.empty()) {
     const bool paused = !rests && !clock.ended(state);
-    report.message = rests ? "the ply is at rest" : paused ? "paused, to be continued" : "the time is over";
-    if (paused) report.status = RunStatus::paused;
+    summary.message = rests ? "the ply is at rest" : paused ? "paused, to be continued" : "the time is over";
+    if (paused) summary.status = RunStatus::paused;
   }
-  report.steps = state.step;
-  report.dt = state.time / double(std::max<std::int64_t>(state.step, 1));
-  report.simulated_time = state.time;
-  report.state_hash = hash_state(state, model.node_count());
-  report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
-  report.element_updates_per_second = double(state.step - first_step) * model.scene().mesh.element_count() /
-                                      std::max(report.wall_seconds, 1e-9);
+  summary.steps = state.step;
+  summary.dt = state.time / double(std::max<std::int64_t>(state.step, 1));
+  summary.simulated_time = state.time;
+  summary.state_hash = hash_state(state, model.node_count());
+  summary.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+  summary.element_updates_per_second = double(state.step - first_step) * model.scene().mesh.element_count() /
+                                      std::max(summary.wall_seconds, 1e-9);
   return result;
 }
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "fem/core/report.hpp"
+#include "fem/core/run_summary.hpp"
 #include "fem/core/snapshot.hpp"
 #include "fem/model/model.hpp"
 #include "fem/rig/schedule.hpp"
@@ -23,7 +23,7 @@ struct RunRequest {
 };
 
 struct RunResult {
-  RunReport report;
+  RunSummary summary;
   Snapshot final;  ///< the last state, also of a diverged run, to look at
   State state;     ///< the same, to go on from; its `record` has the extremes of the run
 };

@@ -166,25 +166,25 @@ Throughput measure_throughput(const Model& model, const ThroughputRequest& reque
     part.schedule = request.schedule;
     part.duration = request.duration;
     RunResult result = simulate(model, part);
-    if (result.report.status == RunStatus::diverged) throw std::runtime_error(result.report.message);
+    if (result.summary.status == RunStatus::diverged) throw std::runtime_error(result.summary.message);
     return result;
   };
   const State from = run({.pause = request.start}).state;
   std::int64_t steps = request.steps;
   if (steps == 0) {  // a short run says how many fill a repeat
     constexpr std::int64_t kTrialSteps = 200;
-    const RunReport trial = run({.from = &from, .steps = kTrialSteps}).report;
+    const RunSummary trial = run({.from = &from, .steps = kTrialSteps}).summary;
     const double per_step = trial.wall_seconds / double(trial.steps - from.step);
     steps = std::max(std::int64_t(request.seconds / per_step), kTrialSteps);
   }
   Throughput out;
   std::vector<double> rates;
   for (int k = 0; k < request.repeats; ++k) {
-    const RunReport report = run({.from = &from, .steps = steps}).report;
-    rates.push_back(report.element_updates_per_second);
-    out.same_hash = out.same_hash && (k == 0 || report.state_hash == out.state_hash);
-    out.state_hash = report.state_hash;
-    out.steps = report.steps - from.step;
+    const RunSummary summary = run({.from = &from, .steps = steps}).summary;
+    rates.push_back(summary.element_updates_per_second);
+    out.same_hash = out.same_hash && (k == 0 || summary.state_hash == out.state_hash);
+    out.state_hash = summary.state_hash;
+    out.steps = summary.steps - from.step;
   }
   std::sort(rates.begin(), rates.end());
   out.updates_per_second = rates[rates.size() / 2];

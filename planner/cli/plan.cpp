@@ -57,7 +57,7 @@ json history_json(const StagedResult& search) {
 }
 
 json drape_json(const Drape& drape) {
-  json out = report_json(drape.run.report);
+  json out = summary_json(drape.run.summary);
   out["score"] = score_json(drape.score);
   return out;
 }

@@ -56,7 +56,7 @@ PartOfRun part_of_run(const SimulateOptions& options, const Model& model) {
 /// Saves the state where --save says, and adds the stable step at it: as estimated, and the true one.
 void finish_run(const SimulateOptions& options, const Model& model, const RunResult& run, json& result) {
   if (!options.save.empty()) save_state(options.save, model, run.state);
-  if (run.report.status == RunStatus::diverged) return;
+  if (run.summary.status == RunStatus::diverged) return;
   StepScratch scratch(model);
   State state = run.state;
   const double estimate = stable_step(model, state, scratch), limit = true_stable_step(model, run.state);
@@ -64,23 +64,23 @@ void finish_run(const SimulateOptions& options, const Model& model, const RunRes
       {"estimate", finite(estimate)}, {"true", finite(limit)}, {"share", finite(estimate / limit)}};
 }
 
-std::string summary(const RunReport& report, int nodes) {
+std::string summary_text(const RunSummary& summary, int nodes) {
   char text[300];
   std::snprintf(text, sizeof text,
                 "%s: %lld steps of %.3g us on %d nodes in %.1f s (%.1f million element updates per "
                 "second)\nenergy [J]:",
-                report.message.c_str(), static_cast<long long>(report.steps), 1e6 * report.dt, nodes,
-                report.wall_seconds, 1e-6 * report.element_updates_per_second);
+                summary.message.c_str(), static_cast<long long>(summary.steps), 1e6 * summary.dt, nodes,
+                summary.wall_seconds, 1e-6 * summary.element_updates_per_second);
   std::string lines = text;
-  for_each_energy(report, [&](const std::string& key, double value, bool ReportParts::*part) {
-    if (key == "largest" || key == "balance_error" || (part != nullptr && !(report.parts.*part))) return;
+  for_each_energy(summary, [&](const std::string& key, double value, bool SummaryParts::*part) {
+    if (key == "largest" || key == "balance_error" || (part != nullptr && !(summary.parts.*part))) return;
     std::snprintf(text, sizeof text, " %s %.4g,", key.c_str(), value);
     lines += text;
   });
   std::snprintf(text, sizeof text,
                 " hourglass at most %.2f %% of internal; books close to %.1e of the largest\nstate hash %s\n",
-                1e2 * report.largest_hourglass_share, report.energy.balance_error,
-                hex(report.state_hash).c_str());
+                1e2 * summary.largest_hourglass_share, summary.energy.balance_error,
+                hex(summary.state_hash).c_str());
   return lines + text;
 }
 
@@ -122,7 +122,7 @@ int simulate_free(const Case& value, const SimulateOptions& options) {
   request.frames = options.common.out.empty() ? 0 : options.frames;
   request.observe = [&frames](const Snapshot& frame) { frames.push_back(frame); };
   const RunResult run = simulate(model, request);
-  json result = report_json(run.report);
+  json result = summary_json(run.summary);
   finish_run(options, model, run, result);
   result["terms"] = model.term_names();
   json probes = json::object();
@@ -130,7 +130,7 @@ int simulate_free(const Case& value, const SimulateOptions& options) {
     const Snapshot start = take_snapshot(model, model.flat_state(value.start_height), RigDrive{});
     result["probes"] = probes = probes_json(value, model, start, run.final);
   }
-  std::string text = summary(run.report, model.node_count());
+  std::string text = summary_text(run.summary, model.node_count());
   for (const auto& [name, probe] : probes.items()) {
     const auto u = probe["displacement"];
     char line[200];
@@ -148,7 +148,7 @@ int simulate_free(const Case& value, const SimulateOptions& options) {
     write_frames(options.common.out, "ply", model.scene().mesh, frames, value.mold ? &*value.mold : nullptr,
                  value.material.thickness);
   }
-  return run.report.status != RunStatus::diverged ? code : kNotFinished;
+  return run.summary.status != RunStatus::diverged ? code : kNotFinished;
 }
 
 /// The schedule by name or from a file; prints errors and returns nothing if the file is wrong.
@@ -184,7 +184,7 @@ std::string score_line(const Drape& drape) {
       1e3 * score.max_gap, 1e3 * score.rms_gap, 1e3 * score.max_boundary_offset,
       1e3 * score.rms_boundary_offset, score.max_shear_deg, 1e2 * score.max_fibre_strain,
       1e2 * score.max_fibre_compression, score.objective, score.max_actuator_force,
-      1e3 * drape.run.report.largest_penetration, drape.run.report.largest_kinetic_ratio);
+      1e3 * drape.run.summary.largest_penetration, drape.run.summary.largest_kinetic_ratio);
   return line;
 }
 
@@ -199,11 +199,11 @@ int simulate_drape(Case value, const SimulateOptions& options) {
   print_terms(model, options.common);
   const Drape drape = problem.run(*schedule, options.fidelity, files ? options.frames : 0,
                                   {part.from ? &*part.from : nullptr, part.pause});
-  json result = report_json(drape.run.report);
+  json result = summary_json(drape.run.summary);
   finish_run(options, model, drape.run, result);
   result["score"] = score_json(drape.score);
   result["terms"] = model.term_names();
-  const std::string text = summary(drape.run.report, model.node_count()) + score_line(drape);
+  const std::string text = summary_text(drape.run.summary, model.node_count()) + score_line(drape);
   const int code = deliver(result, text, options.common, &problem.value());
   if (code == kDone && files) {
     const std::filesystem::path folder(options.common.out);
@@ -217,7 +217,7 @@ int simulate_drape(Case value, const SimulateOptions& options) {
     write_schedule(folder / "schedule.json", *schedule, *resolved.grippers);
     write_schedule_csv(folder / "schedule.csv", *schedule, *resolved.grippers);
   }
-  return drape.score.valid || drape.run.report.status == RunStatus::paused ? code : kNotFinished;
+  return drape.score.valid || drape.run.summary.status == RunStatus::paused ? code : kNotFinished;
 }
 
 int run_simulate(const SimulateOptions& options) {

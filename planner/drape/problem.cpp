@@ -148,13 +148,13 @@ Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, i
   if (frames > 0) request.observe = [&drape](const Snapshot& frame) { drape.frames.push_back(frame); };
   drape.run = simulate(model, request);
   drape.gap = gaps(drape.run.final, *case_.mold, case_.material.thickness);
-  if (drape.run.report.status != RunStatus::done) {
-    drape.score = failed_score(drape.run.report.message);
+  if (drape.run.summary.status != RunStatus::done) {
+    drape.score = failed_score(drape.run.summary.message);
     return drape;
   }
   // A gap is never negative: a ply that ended inside the mold would look perfectly draped.
-  if (drape.run.report.largest_penetration > case_.material.thickness) {
-    drape.score = failed_score("the ply came " + std::to_string(1e3 * drape.run.report.largest_penetration) +
+  if (drape.run.summary.largest_penetration > case_.material.thickness) {
+    drape.score = failed_score("the ply came " + std::to_string(1e3 * drape.run.summary.largest_penetration) +
                                " mm inside the mold: more than its thickness");
     return drape;
   }

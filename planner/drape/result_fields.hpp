@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "fem/core/report.hpp"
+#include "fem/core/run_summary.hpp"
 #include "planner/drape/score.hpp"
 
 namespace drapeplan {
@@ -29,36 +29,36 @@ void for_each_part(ScoreType& s, const Visit& visit) {
   visit("objective", s.objective);
 }
 
-/// Calls visit(key, field, part) for every energy of a report. `part` points to the member of ReportParts
+/// Calls visit(key, field, part) for every energy of a summary. `part` points to the member of SummaryParts
 /// that says whether the scene has any of it; null: every scene does.
-template <class ReportType, class Visit>
-void for_each_energy(ReportType& r, const Visit& visit) {
-  using Part = bool ReportParts::*;
+template <class Summary, class Visit>
+void for_each_energy(Summary& r, const Visit& visit) {
+  using Part = bool SummaryParts::*;
   auto& e = r.energy;
   visit("kinetic", e.kinetic, Part(nullptr));
   visit("internal", e.internal, Part(nullptr));
-  visit("external", e.external, &ReportParts::external);
-  visit("friction", e.friction, &ReportParts::friction);
-  visit("contact", e.contact, &ReportParts::contact);
-  visit("damping", e.damping, &ReportParts::damping);
-  visit("constraint", e.constraint, &ReportParts::constraint);
+  visit("external", e.external, &SummaryParts::external);
+  visit("friction", e.friction, &SummaryParts::friction);
+  visit("contact", e.contact, &SummaryParts::contact);
+  visit("damping", e.damping, &SummaryParts::damping);
+  visit("constraint", e.constraint, &SummaryParts::constraint);
   visit("hourglass", e.hourglass, Part(nullptr));
   visit("largest", e.largest, Part(nullptr));
   visit("balance_error", e.balance_error, Part(nullptr));
 }
 
-/// The same for the other doubles of a report.
-template <class ReportType, class Visit>
-void for_each_figure(ReportType& r, const Visit& visit) {
-  using Part = bool ReportParts::*;
+/// The same for the other doubles of a summary.
+template <class Summary, class Visit>
+void for_each_figure(Summary& r, const Visit& visit) {
+  using Part = bool SummaryParts::*;
   visit("dt", r.dt, Part(nullptr));
   visit("simulated_time", r.simulated_time, Part(nullptr));
   visit("wall_seconds", r.wall_seconds, Part(nullptr));
   visit("element_updates_per_second", r.element_updates_per_second, Part(nullptr));
   visit("largest_kinetic_ratio", r.largest_kinetic_ratio, Part(nullptr));
   visit("largest_hourglass_share", r.largest_hourglass_share, Part(nullptr));
-  visit("largest_penetration", r.largest_penetration, &ReportParts::contact);
-  visit("largest_link_error", r.largest_link_error, &ReportParts::links);
+  visit("largest_penetration", r.largest_penetration, &SummaryParts::contact);
+  visit("largest_link_error", r.largest_link_error, &SummaryParts::links);
 }
 
 /// The words of RunStatus, in its order.
@@ -87,20 +87,20 @@ inline nlohmann::json score_json(const Score& score) {
 }
 
 /// Without the figures of what the scene does not have.
-inline nlohmann::json report_json(const RunReport& report) {
+inline nlohmann::json summary_json(const RunSummary& summary) {
   nlohmann::json out, energy;
-  const auto write_to = [&report](nlohmann::json& object) {
-    return [&](const char* key, double value, bool ReportParts::*part) {
-      if (part == nullptr || report.parts.*part) object[key] = finite(value);
+  const auto write_to = [&summary](nlohmann::json& object) {
+    return [&](const char* key, double value, bool SummaryParts::*part) {
+      if (part == nullptr || summary.parts.*part) object[key] = finite(value);
     };
   };
-  for_each_figure(report, write_to(out));
-  for_each_energy(report, write_to(energy));
+  for_each_figure(summary, write_to(out));
+  for_each_energy(summary, write_to(energy));
   out["energy"] = energy;
-  out["status"] = kRunStatus[size_t(report.status)];
-  out["message"] = report.message;
-  out["steps"] = report.steps;
-  out["state_hash"] = hex(report.state_hash);
+  out["status"] = kRunStatus[size_t(summary.status)];
+  out["message"] = summary.message;
+  out["steps"] = summary.steps;
+  out["state_hash"] = hex(summary.state_hash);
   return out;
 }
 

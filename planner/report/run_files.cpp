@@ -158,9 +158,9 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
                   {"failed evaluations", std::to_string(search.failed_evaluations)},
                   {"wall time", format("%.0f s", result.wall_seconds)},
                   {"best candidate", search.best.name},
-                  {"state hash of the best drape", hex(result.best.run.report.state_hash)},
+                  {"state hash of the best drape", hex(result.best.run.summary.state_hash)},
                   {"energy balance error",
-                   format("%.1e of the largest energy", result.best.run.report.energy.balance_error)}};
+                   format("%.1e of the largest energy", result.best.run.summary.energy.balance_error)}};
   report.files = {{"schedule.json", "the optimised sequence, knots"},
                   {"schedule.csv", "the same, sampled for a robot controller"},
                   {"result.json", "all results"},

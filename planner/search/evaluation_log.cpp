@@ -37,7 +37,7 @@ json to_json(const Evaluation& e) {
           {"best_so_far", finite(e.best_so_far)},
           {"wall_seconds", finite(e.outcome.wall_seconds)},
           {"score", score_json(e.outcome.score)},
-          {"report", report_json(e.outcome.report)}};
+          {"summary", summary_json(e.outcome.summary)}};
 }
 
 Evaluation from_json(const json& j) {
@@ -49,24 +49,24 @@ Evaluation from_json(const json& j) {
   e.best_so_far = number_or(j.at("best_so_far"), kInfinity);
   e.outcome.wall_seconds = number_or(j.at("wall_seconds"), 0);
   const json& score = j.at("score");
-  const json& report = j.at("report");
+  const json& summary = j.at("summary");
   constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
   for_each_part(e.outcome.score, [&](const char* key, double& v) { v = number_or(score.at(key), kLost); });
   e.outcome.score.valid = score.at("valid").get<bool>();
   if (!e.outcome.score.valid) e.outcome.score.reason = score.at("reason").get<std::string>();
   const auto read_from = [&](const json& object) {
-    return [&](const char* key, double& v, bool ReportParts::*part) {
+    return [&](const char* key, double& v, bool SummaryParts::*part) {
       const bool absent = part != nullptr && !object.contains(key);
-      if (absent) e.outcome.report.parts.*part = false;
+      if (absent) e.outcome.summary.parts.*part = false;
       v = absent ? 0 : number_or(object.at(key), kLost);
     };
   };
-  for_each_figure(e.outcome.report, read_from(report));
-  for_each_energy(e.outcome.report, read_from(report.at("energy")));
-  e.outcome.report.status = report.at("status") == "done" ? RunStatus::done : RunStatus::diverged;
-  e.outcome.report.message = report.at("message").get<std::string>();
-  e.outcome.report.steps = report.at("steps").get<std::int64_t>();
-  e.outcome.report.state_hash = from_hex(report.at("state_hash"));
+  for_each_figure(e.outcome.summary, read_from(summary));
+  for_each_energy(e.outcome.summary, read_from(summary.at("energy")));
+  e.outcome.summary.status = summary.at("status") == "done" ? RunStatus::done : RunStatus::diverged;
+  e.outcome.summary.message = summary.at("message").get<std::string>();
+  e.outcome.summary.steps = summary.at("steps").get<std::int64_t>();
+  e.outcome.summary.state_hash = from_hex(summary.at("state_hash"));
   return e;
 }
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "fem/core/report.hpp"
+#include "fem/core/run_summary.hpp"
 #include "fem/rig/schedule.hpp"
 #include "planner/drape/score.hpp"
 
@@ -21,7 +21,7 @@ namespace drapeplan {
 /// What one evaluation gave.
 struct Outcome {
   Score score;  ///< valid == false: failed, for the reason given there
-  RunReport report;
+  RunSummary summary;
   double wall_seconds = 0;  ///< [s]
   bool cached = false;      ///< served without a run
 };
@@ -42,7 +42,7 @@ std::uint64_t schedule_hash(const Schedule& schedule);
 
 /// Append-only file of JSON lines. The first names the format and the case; each other one is an evaluation,
 /// flushed when written. Thread-safe. Resume = open the same file again: known (schedule, fidelity) pairs are
-/// then served from it. Of a report only what the planner shows is kept (status, steps, times, energies,
+/// then served from it. Of a run's summary only what the planner shows is kept (status, steps, times, energies,
 /// hash).
 class EvaluationLog {
  public:
@@ -78,7 +78,7 @@ class EvaluationLog {
   std::ofstream file_;
 };
 
-/// The evaluations of a log file, for reports; same errors as EvaluationLog except that any case is accepted.
+/// The evaluations of a log file, for pages; same errors as EvaluationLog except that any case is accepted.
 std::vector<Evaluation> read_evaluations(const std::string& path);
 
 }  // namespace drapeplan

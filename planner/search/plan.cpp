@@ -63,7 +63,7 @@ PlanResult plan(const DrapeProblem& problem, const PlanOptions& options,
     const bool report = fidelity == kReport;
     Drape drape = problem.run(schedule, fidelity, report ? kFrames : 0);
     Outcome outcome{
-        .score = drape.score, .report = drape.run.report, .wall_seconds = drape.run.report.wall_seconds};
+        .score = drape.score, .report = drape.run.summary, .wall_seconds = drape.run.summary.wall_seconds};
     if (report) reported.keep(schedule_hash(schedule), std::move(drape));
     return outcome;
   };

@@ -247,7 +247,7 @@ double apart_from(const StressRun& run, const FemOptions& options) {
   changed.scene.options = options;
   const Model model(changed.scene);
   const RunResult other = simulate(model, request_of(changed));
-  if (other.report.status != RunStatus::done) return std::nan("");
+  if (other.summary.status != RunStatus::done) return std::nan("");
   double sum = 0;
   const auto &a = run.result.final.position, &b = other.final.position;
   for (size_t n = 0; n < a.size(); ++n) sum += (a[n] - b[n]).squaredNorm();

@@ -38,7 +38,7 @@ void add_mass(Scenes& scenes) {
     scenes.back().judge = [](const StressRun& run) {
       FemOptions light = run.setup.scene.options;
       light.mass_scaling = 4;
-      const double ratio = run.result.report.largest_kinetic_ratio;
+      const double ratio = run.result.summary.largest_kinetic_ratio;
       const std::string told = ratio > 1 ? "told by a kinetic ratio of " + number_text(ratio) + "; " : "";
       return std::vector{
           at_most(told + "apart from mass x 4 [m]", apart_from(run, light), ratio > 1 ? 0.01 : 1e-3)};

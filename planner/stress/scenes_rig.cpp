@@ -147,7 +147,7 @@ void add_links(Scenes& scenes) {
   scenes.back().judge = [](const StressRun& run) {
     constexpr double kAmplitude = 1e-9;  // [m]
     const RigOptions& rig = *run.setup.scene.rig;
-    const double rate = 2 / run.result.report.dt;
+    const double rate = 2 / run.result.summary.dt;
     const double missing = std::abs(support_over_weight(run) - 1) * weight_of(run.setup.scene);
     return std::vector{at_most("weight not borne, in chatter [N]", missing,
                                rig.count() * rig.pad_mass * rate * rate * kAmplitude)};

@@ -35,15 +35,15 @@ double drift_of(const StressRun& run) {
 
 /// What holds for every run that ends.
 std::vector<StressCheck> common_checks(const StressScene& scene, const StressRun& run) {
-  const RunReport& report = run.result.report;
+  const RunSummary& summary = run.result.summary;
   const RunRecord& record = run.result.state.record;
-  const double largest = std::max(report.energy.largest, 1e-300);
+  const double largest = std::max(summary.energy.largest, 1e-300);
   std::vector<StressCheck> checks{
-      at_most("balance", report.energy.balance_error, scene.most_balance),
+      at_most("balance", summary.energy.balance_error, scene.most_balance),
       at_most("fibre strain", record.fibre_strain, scene.most_strain),
       at_most("fibre shortening", record.fibre_compression, scene.most_shortening)};
   // What nothing can give, over the largest energy.
-  const Energies& e = report.energy;
+  const Energies& e = summary.energy;
   const double given = -std::min({e.damping, e.friction, e.contact, e.internal, 0.0}) / largest;
   checks.push_back(at_most("energy given by what only takes", given, scene.most_given));
   const Fabric& fabric = run.setup.scene.fabric;
@@ -53,9 +53,9 @@ std::vector<StressCheck> common_checks(const StressScene& scene, const StressRun
                              (stored.fabric + stored.hourglass - e.internal) / largest, scene.most_given));
   }
   if (run.setup.scene.mold)
-    checks.push_back(at_most("penetration over thickness", report.largest_penetration / fabric.thickness, 1));
+    checks.push_back(at_most("penetration over thickness", summary.largest_penetration / fabric.thickness, 1));
   if (run.setup.scene.rig)
-    checks.push_back(at_most("error of interlinks [m]", report.largest_link_error, kLinkError));
+    checks.push_back(at_most("error of interlinks [m]", summary.largest_link_error, kLinkError));
   double size = 0;
   for (const Eigen::Vector3d& x : run.result.final.position) size += x.squaredNorm();
   checks.push_back(at_most("squares of places", size, 1e6));  // not finite fails
@@ -77,9 +77,9 @@ bool stays_stable(const StressSetup& setup, double share) {
   changed.scene.options.step_safety = share;
   const Model model(changed.scene);
   const RunResult run = simulate(model, request_of(changed));
-  const Energies& e = run.report.energy;
+  const Energies& e = run.summary.energy;
   const double given = -std::min({e.damping, e.friction, e.contact, e.internal, 0.0});
-  return run.report.status == RunStatus::done && given <= kGiven * std::max(e.largest, 1e-300);
+  return run.summary.status == RunStatus::done && given <= kGiven * std::max(e.largest, 1e-300);
 }
 
 /// Largest share of the estimated step that a run survives.
@@ -147,9 +147,9 @@ void play(const StressScene& scene, StressOutcome& outcome) {
   } catch (const std::exception& error) {
     return accept(scene, Verdict::refused, error.what(), outcome);
   }
-  outcome.report = result.report;
-  if (result.report.status == RunStatus::diverged)
-    return accept(scene, Verdict::stopped, result.report.message, outcome);
+  outcome.summary = result.summary;
+  if (result.summary.status == RunStatus::diverged)
+    return accept(scene, Verdict::stopped, result.summary.message, outcome);
   const StressRun run{*setup, *model, result, frames};
   if (scene.rests) outcome.drift = drift_of(run);
   judge_run(scene, run, outcome);

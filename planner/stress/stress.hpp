@@ -73,7 +73,7 @@ struct StressOutcome {
   Verdict verdict = Verdict::wrong;
   std::string reason = {};  ///< of what is not right; else what was measured
   std::vector<StressCheck> checks = {};
-  std::optional<RunReport> report = {};                       ///< if there was a run
+  std::optional<RunSummary> summary = {};                       ///< if there was a run
   std::optional<double> drift = {};                           ///< [m]
   std::optional<double> estimated_step = {}, true_step = {};  ///< at the end [s]
   std::optional<double> limit_over_estimate = {};             ///< by bisection of runs

@@ -44,15 +44,15 @@ std::string escaped(const std::string& text) {
 }
 
 template <class Field>
-std::optional<double> of_report(const StressOutcome& o, const Field& field) {
-  return o.report ? std::optional<double>(field(*o.report)) : std::nullopt;
+std::optional<double> of_summary(const StressOutcome& o, const Field& field) {
+  return o.summary ? std::optional<double>(field(*o.summary)) : std::nullopt;
 }
 
 std::optional<double> balance_of(const StressOutcome& o) {
-  return of_report(o, [](const RunReport& r) { return r.energy.balance_error; });
+  return of_summary(o, [](const RunSummary& r) { return r.energy.balance_error; });
 }
 std::optional<double> kinetic_ratio_of(const StressOutcome& o) {
-  return of_report(o, [](const RunReport& r) { return r.largest_kinetic_ratio; });
+  return of_summary(o, [](const RunSummary& r) { return r.largest_kinetic_ratio; });
 }
 
 json outcome_json(const StressOutcome& o) {
@@ -78,8 +78,8 @@ json outcome_json(const StressOutcome& o) {
                 {"limit_over_estimated_step", maybe(o.limit_over_estimate)},
                 {"wall_seconds", o.wall_seconds},
                 {"checks", std::move(checks)}};
-  entry["steps"] = o.report ? json(o.report->steps) : json(nullptr);
-  entry["dt"] = o.report ? finite(o.report->dt) : json(nullptr);
+  entry["steps"] = o.summary ? json(o.summary->steps) : json(nullptr);
+  entry["dt"] = o.summary ? finite(o.summary->dt) : json(nullptr);
   return entry;
 }
 
@@ -110,8 +110,8 @@ std::string stress_csv(const std::vector<StressOutcome>& outcomes) {
     text += quoted(o.group) + "," + quoted(o.name) + "," + verdict_name(o.verdict) + "," +
             cell(balance_of(o), "%.2e") + "," + cell(kinetic_ratio_of(o), "%.3g") + "," +
             cell(o.drift, "%.2e") + "," + cell(true_over_estimated(o), "%.4f") + "," +
-            cell(o.limit_over_estimate, "%.3f") + "," + (o.report ? std::to_string(o.report->steps) : "") +
-            "," + cell(of_report(o, [](const RunReport& r) { return r.dt; }), "%.4g") + "," +
+            cell(o.limit_over_estimate, "%.3f") + "," + (o.summary ? std::to_string(o.summary->steps) : "") +
+            "," + cell(of_summary(o, [](const RunSummary& r) { return r.dt; }), "%.4g") + "," +
             std::to_string(o.elements) + "," + quoted(o.reason) + "\n";
   }
   return text;

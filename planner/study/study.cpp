@@ -94,7 +94,7 @@ void add_fields(const Mesh& mesh, const std::vector<std::optional<Foot>>& where,
   }
 }
 
-void add_report(const RunReport& report, std::int64_t elements, StudyRun& run) {
+void add_report(const RunSummary& report, std::int64_t elements, StudyRun& run) {
   run.wall_seconds = report.wall_seconds;
   run.steps = double(report.steps);
   run.dt = report.dt;
@@ -119,7 +119,7 @@ StudyRun run_drape(const DrapeProblem& problem, const Schedule& schedule,
   const Drape drape = problem.run(schedule, kReport);
   StudyRun run;
   run.cpu_seconds = thread_seconds() - clock;
-  add_report(drape.run.report, mesh.element_count(), run);
+  add_report(drape.run.summary, mesh.element_count(), run);
   run.valid = drape.score.valid;
   run.reason = drape.score.reason;
   run.objective = drape.score.objective;
@@ -145,7 +145,7 @@ StudyRun run_free(const Case& value) {
   const RunResult result = simulate(model, request);
   StudyRun run;
   run.cpu_seconds = thread_seconds() - clock;
-  add_report(result.report, mesh.element_count(), run);
+  add_report(result.summary, mesh.element_count(), run);
   if (!run.valid) return run;
   const Snapshot start = take_snapshot(model, model.flat_state(value.start_height), RigDrive{});
   for (const Probe& probe : value.probes) {

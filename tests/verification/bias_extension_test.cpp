@@ -107,8 +107,8 @@ void expect_ideal(double mesh_size, double velocity, double limit) {
                               .duration = kEnd / velocity + kRamp / 2,
                               .frames = 24,
                               .observe = [&frames](const Snapshot& frame) { frames.push_back(frame); }});
-  ASSERT_EQ(run.report.status, RunStatus::done) << run.report.message;
-  EXPECT_LE(run.report.energy.balance_error, 1e-10);
+  ASSERT_EQ(run.summary.status, RunStatus::done) << run.summary.message;
+  EXPECT_LE(run.summary.energy.balance_error, 1e-10);
   ASSERT_EQ(frames.size(), 24U);
   const auto head = size_t(scene.grips[1].nodes[0]);
   double work = 0, last_d = 0, last_force = 0;
@@ -129,7 +129,7 @@ void expect_ideal(double mesh_size, double velocity, double limit) {
     EXPECT_LE(std::abs(frame.grip_force[1].x()), 0.01 * force);
   }
   EXPECT_NEAR(last_d, kEnd, 1e-6);
-  EXPECT_LE(std::abs(work / run.report.energy.external - 1), 0.01);  // what is booked is force times way
+  EXPECT_LE(std::abs(work / run.summary.energy.external - 1), 0.01);  // what is booked is force times way
 }
 
 TEST(BiasExtension, HasThePublishedAngles) {  // H = 270 mm, W = 120 mm, at 10, 20, 30 and 40 mm

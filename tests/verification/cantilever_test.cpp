@@ -54,8 +54,8 @@ double strip_drop(double modulus, int elements) {
     if (scene.mesh.rest[size_t(n)].x() < -0.0749) scene.clamped.push_back(n);
   }
   const RunResult run = simulate(Model(scene), {.schedule = nullptr, .duration = 1.5});
-  EXPECT_EQ(run.report.status, RunStatus::done);
-  EXPECT_LE(run.report.energy.balance_error, 1e-6);
+  EXPECT_EQ(run.summary.status, RunStatus::done);
+  EXPECT_LE(run.summary.energy.balance_error, 1e-6);
   return -run.final.position.back().z();
 }
 

@@ -43,9 +43,9 @@ Film film(const Scene& scene) {
       Model(scene), {.duration = kSwingTime, .frames = kFrames, .observe = [&out](const Snapshot& s) {
                        out.places.push_back(s.position);
                      }});
-  EXPECT_EQ(run.report.status, RunStatus::done) << run.report.message;
+  EXPECT_EQ(run.summary.status, RunStatus::done) << run.summary.message;
   EXPECT_EQ(out.places.size(), size_t(kFrames));
-  out.steps = run.report.steps;
+  out.steps = run.summary.steps;
   return out;
 }
 
@@ -116,7 +116,7 @@ TEST(SelectiveScaling, LeavesTheSagOfAStripAsItIs) {
     Scene scene = hanging_strip();
     scene.options.selective_scaling = scaling;
     runs.push_back(simulate(Model(scene), {.duration = kTime}));
-    ASSERT_EQ(runs.back().report.status, RunStatus::done) << runs.back().report.message;
+    ASSERT_EQ(runs.back().summary.status, RunStatus::done) << runs.back().summary.message;
   }
   double sag = 0;
   for (const Eigen::Vector3d& x : runs[0].final.position) sag = std::max(sag, -x.z());
@@ -128,7 +128,7 @@ TEST(SelectiveScaling, LeavesTheSagOfAStripAsItIs) {
       if (!(d <= largest)) largest = d;
     }
     std::printf("  sag %.4f mm, %lld steps, apart %.2e of it\n", 1e3 * sag,
-                static_cast<long long>(run.report.steps), largest / sag);
+                static_cast<long long>(run.summary.steps), largest / sag);
     EXPECT_LE(largest, 1e-8 * sag);
   }
 }

@@ -147,7 +147,7 @@ Schedule changed(Schedule schedule, const RigOptions& rig, const Change& change)
 
 /// Places of nodes of a changed run, undone, by the numbers of the original one.
 std::vector<Vector3d> undone(const RunResult& run, const Change& change) {
-  EXPECT_EQ(run.report.status, RunStatus::done) << run.report.message;
+  EXPECT_EQ(run.summary.status, RunStatus::done) << run.summary.message;
   std::vector<Vector3d> x = run.final.position;
   for (Vector3d& place : x) place = change.back(place);
   if (change.renumbered) std::reverse(x.begin(), x.end());
@@ -185,10 +185,10 @@ void expect_the_same(const Scene& scene, double duration, double tolerance) {
   const std::vector<Vector3d> reference = undone(run, {});
   double fall = 0;
   for (const Vector3d& x : reference) fall = std::max(fall, scene.start_height - x.z());
-  std::printf("  %lld steps, the corners fell by %.2f mm\n", static_cast<long long>(run.report.steps),
+  std::printf("  %lld steps, the corners fell by %.2f mm\n", static_cast<long long>(run.summary.steps),
               1e3 * fall);
   EXPECT_GE(fall, 2e-4);
-  EXPECT_GT(run.report.energy.friction, 0);
+  EXPECT_GT(run.summary.energy.friction, 0);
   for (const Change& change : kChanges) {
     const auto places = undone(simulate(Model(changed(scene, change)), request), change);
     const double difference = largest_difference(places, reference) / 0.2;

@@ -280,7 +280,7 @@ TEST(Rates, SwitchedOffAreAMaterialWithItsSlowestCurvesOnly) {
   for (StressTable* table : {&slowest.fabric.tension, &slowest.fabric.compression, &slowest.fabric.shear})
     *table = table->slowest();
   const auto hash = [](const Scene& scene) {
-    return simulate(Model(scene), {.duration = 0.05}).report.state_hash;
+    return simulate(Model(scene), {.duration = 0.05}).summary.state_hash;
   };
   EXPECT_EQ(hash(off), hash(slowest));
   EXPECT_NE(hash(on), hash(slowest));
@@ -291,7 +291,7 @@ TEST(Rates, OfASingleCurveAreNone) {
   one.fabric.tension.rates = one.fabric.compression.rates = one.fabric.shear.rates = {1e-3};
   const RunResult a = simulate(Model(without), {.duration = 0.05}),
                   b = simulate(Model(one), {.duration = 0.05});
-  EXPECT_EQ(a.report.state_hash, b.report.state_hash);
+  EXPECT_EQ(a.summary.state_hash, b.summary.state_hash);
   EXPECT_EQ(Model(one).term_names().front(), "shell, 3 section points");
 }
 
@@ -311,7 +311,7 @@ TEST(Rates, LetARunThatDivergesEndAsAResult) {
   scene.options.step_safety = 6;
   scene.options.bulk_viscosity = 0;
   const RunResult result = simulate(Model(scene), {.duration = 0.2});
-  EXPECT_EQ(result.report.status, RunStatus::diverged) << result.report.message;
+  EXPECT_EQ(result.summary.status, RunStatus::diverged) << result.summary.message;
 }
 
 }  // namespace

@@ -101,8 +101,8 @@ Count count_of(const Model& model, const Schedule& schedule, double duration) {
   const long before = allocations;
   const RunResult run = simulate(model, {.schedule = &schedule, .duration = duration});
   const long after = allocations;
-  EXPECT_EQ(run.report.message, "the time is over");
-  return {after - before, run.report.steps};
+  EXPECT_EQ(run.summary.message, "the time is over");
+  return {after - before, run.summary.steps};
 }
 
 TEST(Allocations, AreCounted) {
@@ -133,8 +133,8 @@ TEST(Allocations, AreNoneInAStepOrALook) {
     State state = simulate(model, {.schedule = &schedule, .pause = pause}).state;
     Workspace work(model);
     Monitor monitor(model);
-    RunReport report;
-    monitor.look(state, report);  // takes its room once
+    RunSummary summary;
+    monitor.look(state, summary);  // takes its room once
     const long before = allocations;
     for (int k = 0; k < 1000; ++k) {
       if (k % 32 == 0) {
@@ -149,12 +149,12 @@ TEST(Allocations, AreNoneInAStepOrALook) {
       drift_nodes(model, state);
       model.rig()->drift(state);
       advance_clock(state);
-      if (k % 100 == 0) monitor.look(state, report);
+      if (k % 100 == 0) monitor.look(state, summary);
       if (k % 500 == 0) monitor.compare_energies(state);
     }
     const long after = allocations;
     EXPECT_EQ(after - before, 0) << "from " << pause << " s on";
-    EXPECT_EQ(report.status, RunStatus::done) << report.message;
+    EXPECT_EQ(summary.status, RunStatus::done) << summary.message;
   }
 }
 

@@ -35,12 +35,12 @@ TEST(RigDrape, KeepsPadsWithinTheirTiltLimitWhereActuatorsPressThemOntoAMoldStee
                        for (size_t g = 0; g < 4; ++g)
                          largest = std::max(largest, std::acos(normal_of(f, g, *scene.rig).z()));
                      }});
-  EXPECT_EQ(result.report.status, RunStatus::done) << result.report.message;
+  EXPECT_EQ(result.summary.status, RunStatus::done) << result.summary.message;
   EXPECT_GE(largest, 12 * kDegree);
   EXPECT_LE(largest, 12.1 * kDegree);
   EXPECT_DOUBLE_EQ(result.state.record.actuator_force, 50);
-  EXPECT_LE(result.report.energy.balance_error, 1e-9);
-  EXPECT_GE(result.report.energy.constraint, -1e-12);
+  EXPECT_LE(result.summary.energy.balance_error, 1e-9);
+  EXPECT_GE(result.summary.energy.constraint, -1e-12);
 }
 
 TEST(RigDrape, KeepsRotationLimitsAgainstInterlinks) {
@@ -57,10 +57,10 @@ TEST(RigDrape, KeepsRotationLimitsAgainstInterlinks) {
                          excess = std::max({excess, warp - 4, -6 - warp, weft - 3, -5 - weft});
                        }
                      }});
-  EXPECT_EQ(result.report.status, RunStatus::done) << result.report.message;
+  EXPECT_EQ(result.summary.status, RunStatus::done) << result.summary.message;
   EXPECT_GE(excess, 0);
   EXPECT_LE(excess, 0.1);
-  EXPECT_LE(result.report.energy.balance_error, 1e-9);
+  EXPECT_LE(result.summary.energy.balance_error, 1e-9);
 }
 
 TEST(RigDrape, MovesJointsInPlaneWhereTheScheduleSaysSo) {
@@ -79,8 +79,8 @@ TEST(RigDrape, MovesJointsInPlaneWhereTheScheduleSaysSo) {
                                     {6, from + Eigen::Vector2d(g == 3 ? -0.01 : 0, -0.004)}});
   }
   const RunResult result = simulate(Model(scene), {.schedule = &schedule});
-  EXPECT_EQ(result.report.status, RunStatus::done) << result.report.message;
-  EXPECT_LE(result.report.energy.balance_error, 1e-9);
+  EXPECT_EQ(result.summary.status, RunStatus::done) << result.summary.message;
+  EXPECT_LE(result.summary.energy.balance_error, 1e-9);
   for (int g = 0; g < 4; ++g) {
     const Eigen::Vector2d to = schedule.plane_paths[size_t(g)].back().xy;
     EXPECT_LE((result.final.joint[size_t(g)].head<2>() - to).norm(), 5e-4)
@@ -102,11 +102,11 @@ TEST(RigDrape, ClosesItsBooksThroughReleasesInMotion) {
   schedule.release = {1.0, std::nullopt, 1.5, 5.5};
   const Model model(scene);
   const RunResult result = simulate(model, {.schedule = &schedule});
-  EXPECT_EQ(result.report.status, RunStatus::done) << result.report.message;
-  EXPECT_LE(result.report.energy.balance_error, 1e-9);
+  EXPECT_EQ(result.summary.status, RunStatus::done) << result.summary.message;
+  EXPECT_LE(result.summary.energy.balance_error, 1e-9);
   EXPECT_LE(result.state.record.link_error, 1e-7);
   schedule.release.clear();
-  EXPECT_NE(result.report.state_hash, simulate(model, {.schedule = &schedule}).report.state_hash);
+  EXPECT_NE(result.summary.state_hash, simulate(model, {.schedule = &schedule}).summary.state_hash);
 }
 
 TEST(RigDrape, ReleasesNodesWithTheVelocitiesThatTheyHadAndLetsThemFall) {

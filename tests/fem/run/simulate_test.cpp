@@ -21,22 +21,22 @@ TEST(Simulate, ClosesItsBooksToRoundOffInADrape) {
   const Scene scene = small_drape();
   const Schedule schedule = test::drop(scene);
   const RunResult result = simulate(Model(scene), {.schedule = &schedule});
-  EXPECT_EQ(result.report.status, RunStatus::done) << result.report.message;
-  EXPECT_LE(result.report.energy.balance_error, 1e-9);
-  EXPECT_GT(result.report.energy.friction, 0);
-  EXPECT_GT(result.report.energy.damping, 0);
-  EXPECT_GT(result.report.energy.internal, 0);
+  EXPECT_EQ(result.summary.status, RunStatus::done) << result.summary.message;
+  EXPECT_LE(result.summary.energy.balance_error, 1e-9);
+  EXPECT_GT(result.summary.energy.friction, 0);
+  EXPECT_GT(result.summary.energy.damping, 0);
+  EXPECT_GT(result.summary.energy.internal, 0);
   EXPECT_LE(result.state.record.fibre_strain, 0.02);
-  EXPECT_LE(result.report.largest_link_error, 1e-7);
+  EXPECT_LE(result.summary.largest_link_error, 1e-7);
 }
 
 TEST(Simulate, GivesTheSameBitsTwice) {
   const Scene scene = small_drape();
   const Schedule schedule = test::drop(scene);
   const Model model(scene);
-  const auto first = simulate(model, {.schedule = &schedule}).report.state_hash;
-  EXPECT_EQ(first, simulate(model, {.schedule = &schedule}).report.state_hash);
-  EXPECT_EQ(first, simulate(Model(scene), {.schedule = &schedule}).report.state_hash);
+  const auto first = simulate(model, {.schedule = &schedule}).summary.state_hash;
+  EXPECT_EQ(first, simulate(model, {.schedule = &schedule}).summary.state_hash);
+  EXPECT_EQ(first, simulate(Model(scene), {.schedule = &schedule}).summary.state_hash);
 }
 
 TEST(Simulate, ReportsDivergenceAsAResultWithItsPlace) {
@@ -44,8 +44,8 @@ TEST(Simulate, ReportsDivergenceAsAResultWithItsPlace) {
   scene.options.step_safety = 4;
   const Schedule schedule = test::drop(scene);
   const RunResult result = simulate(Model(scene), {.schedule = &schedule});
-  EXPECT_EQ(result.report.status, RunStatus::diverged);
-  EXPECT_NE(result.report.message.find("not finite"), std::string::npos) << result.report.message;
+  EXPECT_EQ(result.summary.status, RunStatus::diverged);
+  EXPECT_NE(result.summary.message.find("not finite"), std::string::npos) << result.summary.message;
 }
 
 TEST(Simulate, ListsOnlyTheTermsThatTheSceneNeeds) {
@@ -93,12 +93,12 @@ TEST(Simulate, ReportsWhichFiguresTheSceneHas) {
   Scene strip;
   strip.mesh = rectangle_mesh(0.1, 0.02, 0.01);
   strip.fabric = test::woven_fabric();
-  const ReportParts none = simulate(Model(strip), {.duration = 1e-3}).report.parts;
+  const SummaryParts none = simulate(Model(strip), {.duration = 1e-3}).summary.parts;
   for (const bool part :
        {none.external, none.contact, none.friction, none.damping, none.constraint, none.links})
     EXPECT_FALSE(part);
   const Scene drape = small_drape();
-  const ReportParts all = Model(drape).report_parts();
+  const SummaryParts all = Model(drape).summary_parts();
   for (const bool part : {all.external, all.contact, all.friction, all.constraint, all.links})
     EXPECT_TRUE(part);
 }
@@ -108,8 +108,8 @@ TEST(Simulate, LeavesAFreeSheetAtRest) {
   sheet.mesh = rectangle_mesh(0.1, 0.1, 0.0033);
   sheet.fabric = test::woven_fabric();
   const RunResult result = simulate(Model(sheet), {.duration = 0.02});
-  EXPECT_EQ(result.report.status, RunStatus::done) << result.report.message;
-  EXPECT_LE(result.report.energy.balance_error, 1e-3);
+  EXPECT_EQ(result.summary.status, RunStatus::done) << result.summary.message;
+  EXPECT_LE(result.summary.energy.balance_error, 1e-3);
   EXPECT_LE(std::abs(result.final.position.front().z()), 1e-15);
 }
 
@@ -119,7 +119,7 @@ TEST(Simulate, WithoutDampingIsTheSameAsWithNone) {
   strip.fabric = test::woven_fabric();
   strip.gravity = 9.81;
   strip.clamped = {0, 1, 2};
-  const auto hash = [&strip] { return simulate(Model(strip), {.duration = 0.01}).report.state_hash; };
+  const auto hash = [&strip] { return simulate(Model(strip), {.duration = 0.01}).summary.state_hash; };
   const std::uint64_t absent = hash();
   strip.damping = 0;
   EXPECT_EQ(absent, hash());

@@ -108,7 +108,7 @@ TEST(StableStep, IsCloseForAWovenStripThatHangs) {
   const Model model(scene);
   for (const double duration : {0.05, 0.6}) {
     const RunResult run = simulate(model, {.duration = duration});
-    ASSERT_EQ(run.report.status, RunStatus::done);
+    ASSERT_EQ(run.summary.status, RunStatus::done);
     EXPECT_CLOSE_BOUND(ratio("woven strip hanging, " + std::to_string(duration) + " s", model, run.state),
                        0.95);
     EXPECT_CLOSE_BOUND(ply_ratio("strip", model, run.state), 0.95);
@@ -124,7 +124,7 @@ TEST(StableStep, IsCloseForASheetOnADome) {
   scene.damping = 22;
   const Model model(scene);
   const RunResult run = simulate(model, {.duration = 0.5});
-  ASSERT_EQ(run.report.status, RunStatus::done) << run.report.message;
+  ASSERT_EQ(run.summary.status, RunStatus::done) << run.summary.message;
   EXPECT_CLOSE_BOUND(ratio("woven sheet on a dome", model, run.state), 0.93);
   EXPECT_CLOSE_BOUND(ply_ratio("dome", model, run.state), 0.93);
 }
@@ -173,7 +173,7 @@ TEST(StableStep, IsCloseThroughoutADrape) {
     const Schedule schedule = test::drop(scene, {.above = 3, .touch = 6, .end = 7, .clearance = 0.03});
     for (const double pause : {1e-3, 3.5, 0.0}) {
       const RunResult run = simulate(model, {.schedule = &schedule, .pause = pause});
-      ASSERT_NE(run.report.status, RunStatus::diverged) << run.report.message;
+      ASSERT_NE(run.summary.status, RunStatus::diverged) << run.summary.message;
       EXPECT_CLOSE_BOUND(ratio("quick drape at " + std::to_string(run.final.time) + " s", model, run.state),
                          close);
       EXPECT_CLOSE_BOUND(ply_ratio("drape", model, run.state), 0.92);
@@ -233,16 +233,16 @@ TEST(Rest, EndsARunThatHasComeToRestBeforeItsTime) {
     return run.final.position[at];
   };
   const RunResult whole = simulate(Model(scene), {.duration = 8});
-  EXPECT_EQ(whole.report.message, "the time is over");
+  EXPECT_EQ(whole.summary.message, "the time is over");
   scene.rest =
       RestCriterion{.speed = 1e-5};  // what is left is the speed over the slowest rate, here some 2.5 / s
   const RunResult rested = simulate(Model(scene), {.duration = 8});
-  EXPECT_EQ(rested.report.message, "the ply is at rest");
-  EXPECT_EQ(rested.report.status, RunStatus::done);
-  EXPECT_LE(rested.report.simulated_time, 7);
-  EXPECT_GE(rested.report.simulated_time, scene.rest->hold);
+  EXPECT_EQ(rested.summary.message, "the ply is at rest");
+  EXPECT_EQ(rested.summary.status, RunStatus::done);
+  EXPECT_LE(rested.summary.simulated_time, 7);
+  EXPECT_GE(rested.summary.simulated_time, scene.rest->hold);
   const double drop = std::abs(tip(whole).z()), apart = (tip(rested) - tip(whole)).norm();
-  std::printf("at rest after %.2f s of 8 s; tip %.4f mm, off by %.2e of it\n", rested.report.simulated_time,
+  std::printf("at rest after %.2f s of 8 s; tip %.4f mm, off by %.2e of it\n", rested.summary.simulated_time,
               1e3 * drop, apart / drop);
   EXPECT_GE(drop, 0.01);
   EXPECT_LE(apart, 1e-3 * drop);

@@ -68,14 +68,14 @@ Schedule drop(const Scene& scene) {
 }
 
 void expect_same(const RunResult& whole, const RunResult& parts) {
-  EXPECT_EQ(whole.report.status, RunStatus::done) << whole.report.message;
-  EXPECT_EQ(whole.report.message, parts.report.message);
-  EXPECT_EQ(whole.report.state_hash, parts.report.state_hash);
-  EXPECT_EQ(whole.report.steps, parts.report.steps);
-  EXPECT_EQ(whole.report.energy.balance_error, parts.report.energy.balance_error);
-  EXPECT_EQ(whole.report.energy.largest, parts.report.energy.largest);
-  EXPECT_EQ(whole.report.largest_kinetic_ratio, parts.report.largest_kinetic_ratio);
-  EXPECT_EQ(whole.report.largest_hourglass_share, parts.report.largest_hourglass_share);
+  EXPECT_EQ(whole.summary.status, RunStatus::done) << whole.summary.message;
+  EXPECT_EQ(whole.summary.message, parts.summary.message);
+  EXPECT_EQ(whole.summary.state_hash, parts.summary.state_hash);
+  EXPECT_EQ(whole.summary.steps, parts.summary.steps);
+  EXPECT_EQ(whole.summary.energy.balance_error, parts.summary.energy.balance_error);
+  EXPECT_EQ(whole.summary.energy.largest, parts.summary.energy.largest);
+  EXPECT_EQ(whole.summary.largest_kinetic_ratio, parts.summary.largest_kinetic_ratio);
+  EXPECT_EQ(whole.summary.largest_hourglass_share, parts.summary.largest_hourglass_share);
   const RunRecord &a = whole.state.record, &b = parts.state.record;
   for (const auto field :
        {&RunRecord::fibre_strain, &RunRecord::fibre_compression, &RunRecord::actuator_force,
@@ -94,13 +94,13 @@ RunResult in_parts(const Scene& scene, RunRequest request, const std::vector<dou
     request.from = from ? &*from : nullptr;
     request.pause = pause;
     const RunResult part = simulate(model, request);
-    EXPECT_EQ(part.report.status, RunStatus::paused) << part.report.message;
-    EXPECT_EQ(part.report.message, "paused, to be continued");
+    EXPECT_EQ(part.summary.status, RunStatus::paused) << part.summary.message;
+    EXPECT_EQ(part.summary.message, "paused, to be continued");
     save_state(file, model, part.state);
     StateReading reading = load_state(file, Model(scene));
     EXPECT_TRUE(reading.value) << reading.error;
     from = std::move(reading.value);
-    EXPECT_EQ(hash_state(*from, model.node_count()), part.report.state_hash);
+    EXPECT_EQ(hash_state(*from, model.node_count()), part.summary.state_hash);
   }
   request.from = &*from;
   request.pause = 0;
@@ -123,7 +123,7 @@ TEST(Restart, AfterACountOfStepsGoesOnWithTheSameBits) {
   const Model model(strip());
   const RunResult whole = simulate(model, {.duration = 0.05});
   const RunResult first = simulate(model, {.duration = 0.05, .steps = 37});
-  EXPECT_EQ(first.report.status, RunStatus::paused);
+  EXPECT_EQ(first.summary.status, RunStatus::paused);
   EXPECT_EQ(first.state.step, 37);
   const RunResult second = simulate(model, {.duration = 0.05, .from = &first.state, .steps = 5});
   EXPECT_EQ(second.state.step, 42);

@@ -203,12 +203,12 @@ TEST(SingleDrape, ClosesItsBooksAndEndsWithTheScoresOfDouble) {
     ASSERT_TRUE(read.errors.empty());
     const DrapeProblem problem(std::move(read.value));
     drape[single ? 1 : 0] =
-        problem.run(to_schedule(problem.frame(), uniform_strokes(problem.frame())), "report");
+        problem.run(to_schedule(problem.frame(), uniform_strokes(problem.frame())), "summary");
   }
   const Score &one = drape[0].score, &two = drape[1].score;
   ASSERT_TRUE(one.valid);
   ASSERT_TRUE(two.valid) << two.reason;
-  EXPECT_LE(drape[1].run.report.energy.balance_error, 1e-9);
+  EXPECT_LE(drape[1].run.summary.energy.balance_error, 1e-9);
   EXPECT_NEAR(two.max_gap, one.max_gap, 2e-5);
   EXPECT_NEAR(two.max_boundary_offset, one.max_boundary_offset, 2e-5);
 }

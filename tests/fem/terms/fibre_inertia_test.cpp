@@ -317,7 +317,7 @@ TEST(SelectiveScaling, GoesOnWithTheSameBitsThroughAFile) {
   const Scene scene = drape(4);
   const Schedule schedule = drop_and_release(scene);
   const RunResult whole = simulate(Model(scene), {.schedule = &schedule});
-  ASSERT_EQ(whole.report.status, RunStatus::done) << whole.report.message;
+  ASSERT_EQ(whole.summary.status, RunStatus::done) << whole.summary.message;
   const fs::path file =
       fs::path(testing::TempDir()) / ("fibre_inertia_test_" + std::to_string(::getpid()) + ".state");
   std::optional<State> from;
@@ -325,7 +325,7 @@ TEST(SelectiveScaling, GoesOnWithTheSameBitsThroughAFile) {
     const Model model(scene);
     const RunResult part =
         simulate(model, {.schedule = &schedule, .from = from ? &*from : nullptr, .pause = pause});
-    ASSERT_EQ(part.report.status, RunStatus::paused) << part.report.message;
+    ASSERT_EQ(part.summary.status, RunStatus::paused) << part.summary.message;
     EXPECT_NE(part.state.step % scene.options.step_interval, 0);  // directions are not taken anew at once
     save_state(file, model, part.state);
     StateReading reading = load_state(file, Model(scene));
@@ -335,9 +335,9 @@ TEST(SelectiveScaling, GoesOnWithTheSameBitsThroughAFile) {
   }
   fs::remove(file);
   const RunResult parts = simulate(Model(scene), {.schedule = &schedule, .from = &*from});
-  EXPECT_EQ(whole.report.state_hash, parts.report.state_hash);
-  EXPECT_EQ(whole.report.steps, parts.report.steps);
-  EXPECT_EQ(whole.report.energy.balance_error, parts.report.energy.balance_error);
+  EXPECT_EQ(whole.summary.state_hash, parts.summary.state_hash);
+  EXPECT_EQ(whole.summary.steps, parts.summary.steps);
+  EXPECT_EQ(whole.summary.energy.balance_error, parts.summary.energy.balance_error);
   EXPECT_EQ(whole.state.work, parts.state.work);
 }
 
@@ -348,16 +348,16 @@ TEST(SelectiveScaling, KeepsItsBooksAndAddsNextToNoWork) {
   const double first = 0.1, between = 0.1;
   double largest = 0;
   RunResult run = simulate(model, {.schedule = &schedule, .pause = first});
-  for (double pause = first + between; run.report.status == RunStatus::paused; pause += between) {
+  for (double pause = first + between; run.summary.status == RunStatus::paused; pause += between) {
     largest = std::max(largest, std::abs(run.state.work[size_t(Book::added_mass)]));
     const State from = run.state;
     run = simulate(model, {.schedule = &schedule, .from = &from, .pause = pause});
   }
-  ASSERT_EQ(run.report.status, RunStatus::done) << run.report.message;
+  ASSERT_EQ(run.summary.status, RunStatus::done) << run.summary.message;
   std::printf("balance %.1e; work of added mass %.1e of the largest energy, at the end %.1e\n",
-              run.report.energy.balance_error, largest / run.state.record.energy,
+              run.summary.energy.balance_error, largest / run.state.record.energy,
               run.state.work[size_t(Book::added_mass)] / run.state.record.energy);
-  EXPECT_LE(run.report.energy.balance_error, 1e-8);
+  EXPECT_LE(run.summary.energy.balance_error, 1e-8);
   EXPECT_GT(largest, 0);
   EXPECT_LE(largest, 0.01 * run.state.record.energy);
 }
@@ -368,13 +368,13 @@ TEST(SelectiveScaling, GivesNoEnergyWhenAPadLetsGo) {
   const Scene scene = drape(4);
   const Schedule schedule = drop_and_release(scene);
   const RunResult run = simulate(Model(scene), {.schedule = &schedule, .pause = kRelease + 0.1});
-  ASSERT_EQ(run.report.status, RunStatus::paused) << run.report.message;
+  ASSERT_EQ(run.summary.status, RunStatus::paused) << run.summary.message;
   ASSERT_TRUE(run.state.pads.back().released);
   const double added = run.state.work[size_t(Book::added_mass)] / run.state.record.energy;
   std::printf("work of added mass after the release: %.1e of the largest energy\n", added);
   EXPECT_LE(added, 0.01);
   EXPECT_GE(added, -0.03);  // the nodes spring off: mass on their edges takes its share
-  EXPECT_LE(run.report.energy.balance_error, 1e-8);
+  EXPECT_LE(run.summary.energy.balance_error, 1e-8);
 }
 
 TEST(SelectiveScaling, MakesFewerStepsAndTheSameDrape) {
@@ -383,12 +383,12 @@ TEST(SelectiveScaling, MakesFewerStepsAndTheSameDrape) {
     const Scene scene = drape(k == 0 ? 1 : 4);
     const Schedule schedule = drop(scene);
     runs[k] = simulate(Model(scene), {.schedule = &schedule});
-    ASSERT_EQ(runs[k].report.status, RunStatus::done) << runs[k].report.message;
+    ASSERT_EQ(runs[k].summary.status, RunStatus::done) << runs[k].summary.message;
   }
   double apart = 0;
   for (size_t n = 0; n < runs[0].final.position.size(); ++n)
     apart = std::max(apart, (runs[0].final.position[n] - runs[1].final.position[n]).norm());
-  const double fewer = double(runs[0].report.steps) / double(runs[1].report.steps);
+  const double fewer = double(runs[0].summary.steps) / double(runs[1].summary.steps);
   std::printf("%.2f times fewer steps, %.3f mm apart\n", fewer, 1e3 * apart);
   EXPECT_GE(fewer, 2.2);    // 4 over what the estimate for the state gains on the steepest slopes
   EXPECT_LE(apart, 0.002);  // a move of the start by 1e-12 m does up to 0.5 mm: fem/README.md
@@ -401,8 +401,8 @@ TEST(SelectiveScaling, IsBlamedWhereItGivesEnergy) {
   scene.options.selective_scaling = 4;
   const Schedule schedule = test::drop(scene, {.above = 2, .touch = 4, .end = 5});
   const RunResult run = simulate(Model(scene), {.schedule = &schedule});
-  EXPECT_EQ(run.report.status, RunStatus::diverged);
-  EXPECT_NE(run.report.message.find("lower selective_scaling"), std::string::npos) << run.report.message;
+  EXPECT_EQ(run.summary.status, RunStatus::diverged);
+  EXPECT_NE(run.summary.message.find("lower selective_scaling"), std::string::npos) << run.summary.message;
 }
 
 TEST(SelectiveScaling, PlaysAStepThatIsNotAboveTheTrueOne) {
@@ -411,7 +411,7 @@ TEST(SelectiveScaling, PlaysAStepThatIsNotAboveTheTrueOne) {
   const Model model(scene);
   for (const double pause : {1e-3, 1.0, 3.0, 3.9, 4.5, 0.0}) {
     const RunResult run = simulate(model, {.schedule = &schedule, .pause = pause});
-    ASSERT_NE(run.report.status, RunStatus::diverged) << run.report.message;
+    ASSERT_NE(run.summary.status, RunStatus::diverged) << run.summary.message;
     StepScratch scratch(model);
     State state = run.state;
     model.fibre_inertia()->aim(state);  // as choose_step does

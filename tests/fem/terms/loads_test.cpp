@@ -78,9 +78,9 @@ TEST(Loads, AreBookedAsExternalWork) {
   scene.loads =
       Loads{.forces = {{tip, {0, 0, 1e-3}}}, .moments = {{tip, {0, -1e-5, 0}}}, .pressure = {0, 0, 0.1}};
   const RunResult run = simulate(Model(scene), {.schedule = nullptr, .duration = 0.05});
-  EXPECT_EQ(run.report.status, RunStatus::done);
-  EXPECT_GT(run.report.energy.external, 0);
-  EXPECT_LE(run.report.energy.balance_error, 1e-9);
+  EXPECT_EQ(run.summary.status, RunStatus::done);
+  EXPECT_GT(run.summary.energy.external, 0);
+  EXPECT_LE(run.summary.energy.balance_error, 1e-9);
 }
 
 // A moment stiffens or softens a director by no more than |M|: the bound of the step grows with it.
@@ -116,7 +116,7 @@ TEST(Pinned, NodesKeepTheirPlaceWhileTheirDirectorsTurn) {
     turned = std::max(turned, run.final.director[size_t(n)].head<2>().norm());
   }
   EXPECT_GT(turned, 1e-5);
-  EXPECT_LE(run.report.energy.balance_error, 1e-9);
+  EXPECT_LE(run.summary.energy.balance_error, 1e-9);
 }
 
 }  // namespace

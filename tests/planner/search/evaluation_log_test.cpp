@@ -25,9 +25,9 @@ Outcome outcome_of(double objective) {
   outcome.score.valid = true;
   outcome.score.objective = objective;
   outcome.score.max_gap = objective / 3;
-  outcome.report.steps = 12345678901;
-  outcome.report.message = "end of the schedule";
-  outcome.report.state_hash = 0xfedcba9876543210ULL;
+  outcome.summary.steps = 12345678901;
+  outcome.summary.message = "end of the schedule";
+  outcome.summary.state_hash = 0xfedcba9876543210ULL;
   outcome.wall_seconds = 0.25;
   return outcome;
 }
@@ -82,9 +82,9 @@ TEST_F(EvaluationLogFile, ServesAKnownScheduleAfterReopeningToTheLastBit) {
   EXPECT_TRUE(o.score.valid);
   EXPECT_EQ(o.score.objective, 0.02 * third);
   EXPECT_EQ(o.score.max_gap, 0.02 * third / 3);
-  EXPECT_EQ(o.report.steps, 12345678901);
-  EXPECT_EQ(o.report.state_hash, 0xfedcba9876543210ULL);
-  EXPECT_EQ(o.report.message, "end of the schedule");
+  EXPECT_EQ(o.summary.steps, 12345678901);
+  EXPECT_EQ(o.summary.state_hash, 0xfedcba9876543210ULL);
+  EXPECT_EQ(o.summary.message, "end of the schedule");
   EXPECT_FALSE(log.evaluate_once(schedule_ending_at(0.02), "report", [] { return outcome_of(1); }).cached);
   log.write(schedule_ending_at(0.02), "report", "report", outcome_of(1));
   const auto lines = log.evaluations();
@@ -100,7 +100,7 @@ TEST_F(EvaluationLogFile, KeepsFailuresWithAnyReasonAndAnyNumber) {
     Outcome failed = outcome_of(std::numeric_limits<double>::infinity());
     failed.score.valid = false;
     failed.score.reason = "not finite at node 812\n\xff";
-    failed.report.status = RunStatus::diverged;
+    failed.summary.status = RunStatus::diverged;
     log.write(schedule_ending_at(0), "screen", "wave", failed);
   }
   const auto lines = EvaluationLog(path_, 1).evaluations();
@@ -109,7 +109,7 @@ TEST_F(EvaluationLogFile, KeepsFailuresWithAnyReasonAndAnyNumber) {
   EXPECT_FALSE(std::isfinite(lines[0].outcome.score.objective));
   EXPECT_FALSE(std::isfinite(lines[0].best_so_far));
   EXPECT_EQ(lines[0].outcome.score.reason.substr(0, 23), "not finite at node 812\n");
-  EXPECT_EQ(lines[0].outcome.report.status, RunStatus::diverged);
+  EXPECT_EQ(lines[0].outcome.summary.status, RunStatus::diverged);
 }
 
 TEST_F(EvaluationLogFile, CutsATornLastLineWhereverItIsTorn) {

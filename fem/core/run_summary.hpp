@@ -7,7 +7,7 @@
 namespace drapeplan {
 
 /// What a scene has that some figures measure; where it is absent, the figures are 0 and are not written.
-struct ReportParts {
+struct SummaryParts {
   bool external = true;    ///< gravity, loads, actuators or grips
   bool contact = true;     ///< a mold
   bool friction = true;    ///< with friction
@@ -33,10 +33,10 @@ struct Energies {
 
 enum class RunStatus { done, diverged, paused };
 
-struct RunReport {
+struct RunSummary {
   RunStatus status = RunStatus::done;
   std::string message;  ///< why it ended
-  ReportParts parts;
+  SummaryParts parts;
   std::int64_t steps = 0;
   double dt = 0;              ///< mean step [s], of the simulation
   double simulated_time = 0;  ///< [s], of the simulation (schedule time / time scaling)
