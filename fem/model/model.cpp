@@ -421,7 +421,7 @@ SummaryParts Model::summary_parts() const {
 State Model::flat_state(double height) const {
   const int n = node_count();
   State state;
-  state.x = state.v = state.d = state.w = VectorField(n);
+  state.position = state.velocity = state.director = state.director_rate = VectorField(n);
   if (scene_.friction) {
     state.anchor = VectorField(n);
     state.stuck.assign(padded(n), 0.0);
@@ -443,8 +443,8 @@ State Model::flat_state(double height) const {
   for (size_t k = 0; k < padded(n); ++k) {  // padding repeats the last node and has no mass
     const Eigen::Vector2d uv = turn * scene_.mesh.rest[std::min(k, size_t(n) - 1)];
     const Eigen::Vector3d x = origin + lean * Eigen::Vector3d(uv.x(), uv.y(), 0);
-    state.x.x[k] = x.x(), state.x.y[k] = x.y(), state.x.z[k] = x.z();
-    state.d.x[k] = normal.x(), state.d.y[k] = normal.y(), state.d.z[k] = normal.z();
+    state.position.x[k] = x.x(), state.position.y[k] = x.y(), state.position.z[k] = x.z();
+    state.director.x[k] = normal.x(), state.director.y[k] = normal.y(), state.director.z[k] = normal.z();
   }
   if (rig_) rig_->place(state, height);
   if (fibre_inertia_) fibre_inertia_->aim(state);

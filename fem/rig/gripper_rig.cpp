@@ -272,7 +272,7 @@ void GripperRig::free_velocities(State& state, const RigDrive& drive, double alp
       for (const Patch& patch : body.patches) {
         const Vec3<Lanes> f = patch.tied * tied.force.lanes(patch.at);
         of_nodes = of_nodes + f;
-        about = about + cross(state.x.lanes(patch.at) - lanes_of(pad.centre), f);
+        about = about + cross(state.position.lanes(patch.at) - lanes_of(pad.centre), f);
         on_directors = on_directors + patch.tied * tied.moment.lanes(patch.at);
       }
       force += sum_of(of_nodes);
@@ -298,7 +298,7 @@ void GripperRig::kick_released(State& state, const Pad& body, double alpha, cons
   for (auto k = size_t(body.first); k < size_t(body.last); ++k) {
     const auto n = size_t(tied_[k]);
     const Tied& node = nodes_[k];
-    const Vector3d d = get(state.d, n), v = get(state.v, n), w = get(state.w, n);
+    const Vector3d d = get(state.director, n), v = get(state.velocity, n), w = get(state.director_rate, n);
     const Vector3d all = get(tied.moment, n), moment = all - all.dot(d) * d;
     const Vector3d v_new = v + damped.gain / node.mass * get(tied.force, n);
     const Vector3d w_new = w + damped.gain / node.inertia * moment;
@@ -306,8 +306,8 @@ void GripperRig::kick_released(State& state, const Pad& body, double alpha, cons
     damping += node.mass * mean_v.squaredNorm() + node.inertia * mean_w.squaredNorm();
     set(tied.mean_v, n, mean_v);
     set(tied.mean_w, n, mean_w);
-    set(state.v, n, v_new);
-    set(state.w, n, w_new);
+    set(state.velocity, n, v_new);
+    set(state.director_rate, n, w_new);
   }
   book(state, Book::damping, -h * alpha * damping);
 }
@@ -332,7 +332,7 @@ void GripperRig::book_pad(State& state, size_t g, double alpha, const TiedFields
   const Vec3<Lanes> v = lanes_of(mean_v), w = lanes_of(mean_w), centre = lanes_of(pad.centre);
   const Vec3<Lanes> turn = lanes_of(mean_w.cross(pad.rotation * Vector3d::UnitZ()));
   for (const Patch& patch : body.patches) {
-    set_tied(tied.mean_v, patch.at, patch.tied, v + cross(w, state.x.lanes(patch.at) - centre));
+    set_tied(tied.mean_v, patch.at, patch.tied, v + cross(w, state.position.lanes(patch.at) - centre));
     set_tied(tied.mean_w, patch.at, patch.tied, turn);
   }
 }
@@ -365,10 +365,10 @@ void GripperRig::drift(State& state) const {
     const Vec3<Lanes> normal = lanes_of(d), w = lanes_of(pad.angular_velocity.cross(d));
     for (const Patch& patch : pads_[g].patches) {
       const Vec3<Lanes> offset = patch.offset1 * along1 + patch.offset2 * along2;
-      set_tied(state.x, patch.at, patch.tied, centre + offset);
-      set_tied(state.v, patch.at, patch.tied, v + cross(spin, offset));
-      set_tied(state.d, patch.at, patch.tied, normal);
-      set_tied(state.w, patch.at, patch.tied, w);
+      set_tied(state.position, patch.at, patch.tied, centre + offset);
+      set_tied(state.velocity, patch.at, patch.tied, v + cross(spin, offset));
+      set_tied(state.director, patch.at, patch.tied, normal);
+      set_tied(state.director_rate, patch.at, patch.tied, w);
     }
   }
 }
@@ -381,7 +381,7 @@ double GripperRig::kinetic_energy(const State& state, size_t g) const {
   for (auto k = size_t(body.first); pad.released && k < size_t(body.last); ++k) {
     const auto n = size_t(tied_[k]);
     twice +=
-        nodes_[k].mass * get(state.v, n).squaredNorm() + nodes_[k].inertia * get(state.w, n).squaredNorm();
+        nodes_[k].mass * get(state.velocity, n).squaredNorm() + nodes_[k].inertia * get(state.director_rate, n).squaredNorm();
   }
   return 0.5 * twice;
 }

@@ -53,7 +53,7 @@ Monitor::Monitor(const Model& model) : model_(model) {
   if (!model.scene().mold) return;
   const State& flat = half_;
   for (size_t n = 0; n < size_t(model.node_count()); ++n)
-    overhang_ = std::max(overhang_, beyond(model.scene().mold->extent(), flat.x.x[n], flat.x.y[n]));
+    overhang_ = std::max(overhang_, beyond(model.scene().mold->extent(), flat.position.x[n], flat.position.y[n]));
 }
 
 Energies energies(const Model& model, const State& state) {
@@ -82,8 +82,8 @@ bool Monitor::holds_more(const State& state, double limit) {
       place.z[n] -= 0.5 * state.dt_before * rate.z[n];
     }
   };
-  back(half_.x, state.v);
-  back(half_.d, state.w);
+  back(half_.x, state.velocity);
+  back(half_.director, state.director_rate);
   const ShellEnergy stored = model_.shell().stored_energy(half_);
   const double rounding = 0.5 * model_.shell().borne_stretch() * area_ * kRoundStrain * kRoundStrain;
   return stored.fabric + stored.hourglass > limit + rounding;
@@ -120,8 +120,8 @@ bool Monitor::look(State& state, RunSummary& summary) {
                 summary);
   record.balance = std::max(record.balance, std::abs(balance));
   for (size_t n = 0; n < size_t(model_.node_count()); ++n) {
-    if (std::isfinite(state.x.x[n]) && std::isfinite(state.x.y[n]) && std::isfinite(state.x.z[n]) &&
-        std::isfinite(state.v.x[n]) && std::isfinite(state.v.y[n]) && std::isfinite(state.v.z[n])) {
+    if (std::isfinite(state.position.x[n]) && std::isfinite(state.position.y[n]) && std::isfinite(state.position.z[n]) &&
+        std::isfinite(state.velocity.x[n]) && std::isfinite(state.velocity.y[n]) && std::isfinite(state.velocity.z[n])) {
       continue;
     }
     return fail(state, "not finite at node " + std::to_string(n), summary);
@@ -163,13 +163,13 @@ void Monitor::note_penetration(State& state) {
   double z[kChunk], zx[kChunk], zy[kChunk];
   for (int first = 0; first < model_.node_count(); first += kChunk) {
     const int chunk = std::min(kChunk, model_.node_count() - first);
-    mold.heights(chunk, &state.x.x[size_t(first)], &state.x.y[size_t(first)], z, zx, zy);
+    mold.heights(chunk, &state.position.x[size_t(first)], &state.position.y[size_t(first)], z, zx, zy);
     for (int k = 0; k < chunk; ++k) {
       const auto n = size_t(first + k);
-      const double above = (state.x.z[n] - z[k]) / std::sqrt(1 + zx[k] * zx[k] + zy[k] * zy[k]);
-      if (surface - above > 0) slid_ = std::max(slid_, beyond(mold.extent(), state.x.x[n], state.x.y[n]));
+      const double above = (state.position.z[n] - z[k]) / std::sqrt(1 + zx[k] * zx[k] + zy[k] * zy[k]);
+      if (surface - above > 0) slid_ = std::max(slid_, beyond(mold.extent(), state.position.x[n], state.position.y[n]));
       if (!(surface - above > state.record.penetration)) continue;  // not defined here, or no worse
-      const double distance = mold.closest({state.x.x[n], state.x.y[n], state.x.z[n]}).signed_distance;
+      const double distance = mold.closest({state.position.x[n], state.position.y[n], state.position.z[n]}).signed_distance;
       state.record.penetration = std::max(state.record.penetration, surface - distance);
     }
   }
@@ -208,8 +208,8 @@ Snapshot take_snapshot(const Model& model, const State& state, const RigDrive& d
   Snapshot out;
   out.time = state.time * drive.time_scaling;
   for (size_t n = 0; n < size_t(model.node_count()); ++n) {
-    out.position.emplace_back(state.x.x[n], state.x.y[n], state.x.z[n]);
-    out.director.emplace_back(state.d.x[n], state.d.y[n], state.d.z[n]);
+    out.position.emplace_back(state.position.x[n], state.position.y[n], state.position.z[n]);
+    out.director.emplace_back(state.director.x[n], state.director.y[n], state.director.z[n]);
   }
   model.shell().strains(state, out);
   if (!model.scene().grips.empty()) out.grip_force = grip_forces(model, state);

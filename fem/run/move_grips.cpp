@@ -41,10 +41,10 @@ void move_grips(const Model& model, State& state, Workspace& work) {
                          grip_displacement(grip, scaling * state.time);
     const Vector3d next = way / state.dt;
     const auto first = size_t(grip.nodes.front());
-    const Vector3d damped(state.v.x[first], state.v.y[first], state.v.z[first]);
+    const Vector3d damped(state.velocity.x[first], state.velocity.y[first], state.velocity.z[first]);
     const Vector3d mean = 0.5 * (damped / keep + next);
     for (const int node : grip.nodes) {
-      set(state.v, size_t(node), next);
+      set(state.velocity, size_t(node), next);
       set(work.mean_v, size_t(node), mean);
     }
     state.work[size_t(Book::grip)] -= state.kick_time() * pull(model, grip, work).dot(mean);

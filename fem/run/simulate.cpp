@@ -34,15 +34,15 @@ void refuse_start_in_mold(const Model& model, const State& state) {
   constexpr double kSlack = 0.02;  // of the thickness: round-off, and what a ply's weight sinks in
   const double thickness = model.scene().fabric.thickness;
   for (size_t n = 0; n < size_t(model.node_count()); ++n) {
-    const Jet jet = model.scene().mold->jet(state.x.x[n], state.x.y[n]);
+    const Jet jet = model.scene().mold->jet(state.position.x[n], state.position.y[n]);
     const double slope = std::min(std::hypot(jet.zx, jet.zy), kSteepestContact);
     const double stretch = std::hypot(1.0, slope);
-    const double inside = 0.5 * thickness - (state.x.z[n] - jet.z) / stretch;
+    const double inside = 0.5 * thickness - (state.position.z[n] - jet.z) / stretch;
     if (inside > kSlack * thickness) {  // false where the mold is not defined
       throw std::invalid_argument(
           "simulate: the flat ply's underside starts " + std::to_string(1e3 * inside) +
-          " mm below the mold at x = " + std::to_string(state.x.x[n]) +
-          " m, y = " + std::to_string(state.x.y[n]) + " m: check its place and the start height");
+          " mm below the mold at x = " + std::to_string(state.position.x[n]) +
+          " m, y = " + std::to_string(state.position.y[n]) + " m: check its place and the start height");
     }
   }
 }

@@ -66,18 +66,18 @@ class Tangent {
     trial_ = state_;
     for (Eigen::Index n = 0; n < nodes_; ++n) {
       const auto k = size_t(n);
-      const Eigen::Vector3d d(state_.d.x[k], state_.d.y[k], state_.d.z[k]);
+      const Eigen::Vector3d d(state_.director.x[k], state_.director.y[k], state_.director.z[k]);
       const Eigen::Vector3d move = step * weight(n) * u.segment<3>(6 * n);
       Eigen::Vector3d turn = step * turn_weight(n) * u.segment<3>(6 * n + 3);
       turn -= turn.dot(d) * d;
-      trial_.x.x[k] += move.x(), trial_.x.y[k] += move.y(), trial_.x.z[k] += move.z();
-      trial_.v.x[k] += rate_ * move.x(), trial_.v.y[k] += rate_ * move.y(), trial_.v.z[k] += rate_ * move.z();
-      trial_.d.x[k] += turn.x(), trial_.d.y[k] += turn.y(), trial_.d.z[k] += turn.z();
+      trial_.position.x[k] += move.x(), trial_.position.y[k] += move.y(), trial_.position.z[k] += move.z();
+      trial_.velocity.x[k] += rate_ * move.x(), trial_.velocity.y[k] += rate_ * move.y(), trial_.velocity.z[k] += rate_ * move.z();
+      trial_.director.x[k] += turn.x(), trial_.director.y[k] += turn.y(), trial_.director.z[k] += turn.z();
     }
     compute_forces(model_, trial_, work_);
     // At a kink of the law the stiffer side counts: fibres are looked at a little longer than they are, and
     // strains in compression as if they grew.
-    for (auto* part : {&trial_.x.x, &trial_.x.y, &trial_.x.z}) {
+    for (auto* part : {&trial_.position.x, &trial_.position.y, &trial_.position.z}) {
       for (double& place : *part) place *= 1 + kOffTheKink;
     }
     trial_.history = state_.history;  // as it was before the forces
@@ -91,7 +91,7 @@ class Tangent {
       for (Eigen::Index n = 0; n < nodes_; ++n) {
         const auto k = size_t(n);
         if (entry.moment.x.empty()) continue;
-        const Eigen::Vector3d d(state_.d.x[k], state_.d.y[k], state_.d.z[k]);
+        const Eigen::Vector3d d(state_.director.x[k], state_.director.y[k], state_.director.z[k]);
         Eigen::Vector3d moment(entry.moment.x[k], entry.moment.y[k], entry.moment.z[k]);
         moment -= moment.dot(d) * d;
         out.segment<3>(6 * n + 3) += turn_weight(n) * moment;

@@ -57,7 +57,7 @@ void kick(const Model& model, State& state, Workspace& work) {
         work.moment.set_lanes(n, moment);
       }
     }
-    const Vec3<Lanes> v = state.v.lanes(n), w = state.w.lanes(n), d = state.d.lanes(n);
+    const Vec3<Lanes> v = state.velocity.lanes(n), w = state.director_rate.lanes(n), d = state.director.lanes(n);
     const Lanes mobility = load(&model.inverse_mass()[n]), turning = load(&model.inverse_inertia()[n]);
     moment = moment - dot(moment, d) * d;  // a director cannot be stretched
     const auto kicked = [&](const Vec3<Lanes>& before, const Lanes& by_force, const Vec3<Lanes>& sum) {
@@ -65,8 +65,8 @@ void kick(const Model& model, State& state, Workspace& work) {
       return before + (gain * by_force) * sum;
     };
     const Vec3<Lanes> v_new = kicked(v, mobility, force), w_new = kicked(w, turning, moment);
-    state.v.set_lanes(n, v_new);
-    state.w.set_lanes(n, w_new);
+    state.velocity.set_lanes(n, v_new);
+    state.director_rate.set_lanes(n, w_new);
     Lanes free = half, free_turning = half;
     stdx::where(mobility == zero, free) = zero;
     stdx::where(turning == zero, free_turning) = zero;

@@ -67,7 +67,7 @@ class SingleShellTerm final : public ShellTerm<N, A, kRates> {
   DRAPEPLAN_FLATTEN void forces(State& state, Forces* entries) const override {
     entries->force.fill(0);
     entries->moment.fill(0);
-    const Rows<const double> x(state.x), d(state.d);
+    const Rows<const double> x(state.position), d(state.director);
     const Rows<double> force(entries->force), moment(entries->moment);
     const double per_step2 = 1 / (state.stable_dt * state.stable_dt);  // see ShellTerm
     const double viscous = 4 * this->viscous_mass_ * per_step2, borne = 4 * this->viscous_borne_ * per_step2;

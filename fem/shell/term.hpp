@@ -142,7 +142,7 @@ class ShellTerm : public Shell {
 
   DRAPEPLAN_FLATTEN double look_at_sections(const State& state,
                                             std::vector<double>& sections) const override {
-    const Rows<const double> x(state.x), d(state.d);
+    const Rows<const double> x(state.position), d(state.director);
     double* at = sections.data();
     Lanes steepest(0.0);
     for (size_t b = 0; b < blocks_.size(); ++b) {
@@ -203,7 +203,7 @@ class ShellTerm : public Shell {
   DRAPEPLAN_FLATTEN void forces(State& state, Forces* entries) const override {
     entries->force.fill(0);
     entries->moment.fill(0);
-    const Rows<const double> x(state.x), d(state.d);
+    const Rows<const double> x(state.position), d(state.director);
     const Rows<double> force(entries->force), moment(entries->moment);
     // The stiffest fibre that the stable step dt allows has a stress per strain of density (length / dt)^2,
     // length = 2 half: stress = ratio times that, times the change of strain in a step, is the stated damping
@@ -236,7 +236,7 @@ class ShellTerm : public Shell {
     ShellEnergy sum;
     for (size_t e = 0; e < mesh_.quads.size(); ++e) {
       const ElementEnergy energy =
-          shell_energy<N, A>(geometry_[e], material_, corners(state.x, e), corners(state.d, e));
+          shell_energy<N, A>(geometry_[e], material_, corners(state.position, e), corners(state.director, e));
       sum.fabric += energy.fabric;
       sum.hourglass += energy.hourglass;
     }
@@ -249,7 +249,7 @@ class ShellTerm : public Shell {
     snapshot.warp_strain.resize(count);
     snapshot.weft_strain.resize(count);
     for (size_t e = 0; e < count; ++e) {
-      const auto m = element_motion(geometry_[e], corners(state.x, e), corners(state.d, e));
+      const auto m = element_motion(geometry_[e], corners(state.position, e), corners(state.director, e));
       const double length1 = std::sqrt(dot(m.a1, m.a1)), length2 = std::sqrt(dot(m.a2, m.a2));
       snapshot.shear[e] = std::asin(std::clamp(dot(m.a1, m.a2) / (length1 * length2), -1.0, 1.0));
       snapshot.warp_strain[e] = length1 - 1;

@@ -83,12 +83,12 @@ class ContactTerm final : public Term {
     double z[kChunk], zx[kChunk], zy[kChunk];
     for (int first = 0; first < count_; first += kChunk) {
       const int chunk = std::min(kChunk, int(padded(count_)) - first);
-      mold_.heights(chunk, &state.x.x[size_t(first)], &state.x.y[size_t(first)], z, zx, zy);
+      mold_.heights(chunk, &state.position.x[size_t(first)], &state.position.y[size_t(first)], z, zx, zy);
       for (int k = 0; k < chunk && first + k < count_; ++k) {
         const auto n = size_t(first + k);
-        const double speed = std::hypot(state.v.x[n], state.v.y[n], state.v.z[n]);
+        const double speed = std::hypot(state.velocity.x[n], state.velocity.y[n], state.velocity.z[n]);
         const double reach = (1 + kNear) * surface_ + 2 * look_ahead_ * state.dt * speed;
-        const double distance = (state.x.z[n] - z[k]) / std::sqrt(1 + zx[k] * zx[k] + zy[k] * zy[k]);
+        const double distance = (state.position.z[n] - z[k]) / std::sqrt(1 + zx[k] * zx[k] + zy[k] * zy[k]);
         if (distance < reach)  // false where the mold is not defined
           add_node(let_go(state, n) ? released_ : springs_, n, stiffness);
       }
@@ -153,7 +153,7 @@ class ContactTerm final : public Term {
     if (!(clearance > 0)) return false;
     Lanes fastest2(0.0);
     for (size_t n = first; n < std::min(first + size_t(kChunk), size_t(count_)); n += size_t(kLanes)) {
-      const Vec3<Lanes> v = state.v.lanes(n);
+      const Vec3<Lanes> v = state.velocity.lanes(n);
       fastest2 = stdx::max(fastest2, dot(v, v));
     }
     clearance -= 2 * state.dt_before * std::sqrt(stdx::hmax(fastest2));
@@ -163,11 +163,11 @@ class ContactTerm final : public Term {
   /// Places where the normals of the tangent planes at the vertical feet come from: one step towards the
   /// closest points.
   Neighbourhood find_feet(const State& state, size_t first, int chunk, Feet& feet) const {
-    mold_.heights(chunk, &state.x.x[first], &state.x.y[first], feet.z, feet.zx, feet.zy);
+    mold_.heights(chunk, &state.position.x[first], &state.position.y[first], feet.z, feet.zx, feet.zy);
     Lanes lowest(std::numeric_limits<double>::infinity());
     Lanes::mask_type any(false);
     for (size_t k = 0; k < size_t(chunk); k += size_t(kLanes)) {
-      const Vec3<Lanes> x = state.x.lanes(first + k);
+      const Vec3<Lanes> x = state.position.lanes(first + k);
       const Lanes zx = load(&feet.zx[k]), zy = load(&feet.zy[k]), above = x.z - load(&feet.z[k]);
       const Lanes slope2 = zx * zx + zy * zy, stretch2 = Lanes(1.0) + slope2;
       const Lanes reach((1 + kNear) * surface_);  // false where the mold is not defined
@@ -199,7 +199,7 @@ class ContactTerm final : public Term {
 
   void press(State& state, Forces* entries, size_t at, const Feet& feet, size_t k) const {
     const Lanes zero(0.0), one(1.0);
-    const Vec3<Lanes> x = state.x.lanes(at), foot{load(&feet.x[k]), load(&feet.y[k]), load(&feet.z[k])};
+    const Vec3<Lanes> x = state.position.lanes(at), foot{load(&feet.x[k]), load(&feet.y[k]), load(&feet.z[k])};
     const Lanes zx = load(&feet.zx[k]), zy = load(&feet.zy[k]);
     const Lanes rise = one / stdx::sqrt(one + zx * zx + zy * zy);
     Vec3<Lanes> normal{-(zx * rise), -(zy * rise), rise};
@@ -210,7 +210,7 @@ class ContactTerm final : public Term {
     for (Lanes* part : {&normal.x, &normal.y, &normal.z}) *part = zero_unless(touching, *part);
     Lanes stiffness, damping;
     springs_at(state, at, stiffness, damping);
-    const Vec3<Lanes> v = state.v.lanes(at);
+    const Vec3<Lanes> v = state.velocity.lanes(at);
     const Lanes approach = -dot(v, normal);
     const Lanes push = stdx::max(damping * approach - stiffness * gap, zero);
     const Lanes pressure = zero_unless(touching, push);

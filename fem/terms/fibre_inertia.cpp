@@ -126,7 +126,7 @@ void FibreInertia::aim(State& state) const {
     const Lines& lines = lines_[fibre];
     VectorField& n = state.edges[fibre];
     for (size_t k = 0; k < size_t(count_); k += size_t(kLanes)) {
-      const Vec3<Lanes> edge = lines.ends[k / size_t(kLanes)].load_from(state.x) - state.x.lanes(k);
+      const Vec3<Lanes> edge = lines.ends[k / size_t(kLanes)].load_from(state.position) - state.position.lanes(k);
       Lanes length, inverse;
       root_and_inverse(dot(edge, edge), length, inverse);
       std::experimental::where(load(&lines.mass[k]) == Lanes(0.0), inverse) = Lanes(0.0);

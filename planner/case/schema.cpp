@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "planner/base/spelling.hpp"
+#include "planner/case/fields.hpp"
 #include "planner/case/file.hpp"
 #include "planner/input/document.hpp"
 #include "planner/input/values.hpp"

@@ -41,7 +41,7 @@ std::array<double, 2> lifted(int across, int around) {
   const Model model(scene);
   const State state = test::at_rest(model, 1e-3 * kOuter);
   const auto tip = size_t(around);
-  return {state.x.z[size_t(across * (around + 1)) + tip], state.x.z[tip]};
+  return {state.position.z[size_t(across * (around + 1)) + tip], state.position.z[tip]};
 }
 
 TEST(Annulus, LiftsLikeThePublishedSlitPlate) {

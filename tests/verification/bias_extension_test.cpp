@@ -179,7 +179,7 @@ TEST(PictureFrame, ShearsHomogeneouslyAndItsForceIsThatOfThePowerBalance) {
       const Eigen::Vector2d& rest = scene.mesh.rest[n];
       const Eigen::Vector3d way = framed(rest, after) - framed(rest, now);
       work_of_frame -= test::get(work.entries[0].force, n).dot(way) / (after - now);
-      test::put(state.v, n, way / state.dt);
+      test::put(state.velocity, n, way / state.dt);
     }
     if (state.time >= next) {
       next += 0.01;

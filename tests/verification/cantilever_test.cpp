@@ -83,7 +83,7 @@ double heavy_drop(double beta, int n) {
   Scene scene = test::cantilever(sheet, 1, 0.05, n);
   scene.gravity = beta * sheet.bending_stiffness() / sheet.density;
   const Model model(scene);
-  return -test::at_rest(model, 1e-6).x.z[size_t(n)];
+  return -test::at_rest(model, 1e-6).position.z[size_t(n)];
 }
 
 TEST(Cantilever, DropsWithSecondOrderFromSmallToLargeRotations) {

@@ -31,13 +31,13 @@ TEST(Bar, SwingsAxiallyWithTheSpeedOfWaves) {
   const Model model(bar(kBar, kElements));
   State state = model.flat_state(0);
   for (size_t n = 0; n < size_t(model.node_count()); ++n)
-    state.x.x[n] += 1e-5 * std::sin(0.5 * std::numbers::pi * model.scene().mesh.rest[n].x() / kLength);
+    state.position.x[n] += 1e-5 * std::sin(0.5 * std::numbers::pi * model.scene().mesh.rest[n].x() / kLength);
   Workspace work(model);
   const auto tip = size_t(kElements);
-  double first = 0, last = 0, before = state.x.x[tip] - kLength;
+  double first = 0, last = 0, before = state.position.x[tip] - kLength;
   for (int crossings = 0; crossings <= kCrossings && state.step < 1000000;) {
     test::advance(model, state, work);
-    const double now = state.x.x[tip] - kLength;
+    const double now = state.position.x[tip] - kLength;
     if ((now > 0) != (before > 0)) {
       last = state.time - model.dt() * now / (now - before);
       if (crossings == 0) first = last;
@@ -56,15 +56,15 @@ TEST(Bar, CarriesAFrontWithTheStressOfItsEndVelocity) {
   const double velocity = 0.01;
   const Model model(bar(kBar, kElements));
   State state = model.flat_state(0);
-  for (const size_t n : {size_t(0), size_t(kElements + 1)}) state.v.x[n] = -velocity;
+  for (const size_t n : {size_t(0), size_t(kElements + 1)}) state.velocity.x[n] = -velocity;
   Workspace work(model);
   while (state.time < 0.7 * kLength / kSpeed) test::advance(model, state, work);
   int front = kElements;
-  while (front > 0 && !(state.v.x[size_t(front)] < -0.5 * velocity)) --front;
+  while (front > 0 && !(state.velocity.x[size_t(front)] < -0.5 * velocity)) --front;
   EXPECT_LE(test::figure("front of a wave [m]", front * kLength / kElements, kSpeed * state.time), 0.01);
   // Mean over the stretch behind the front, where the grid rings.
   const int behind = kElements / 2;
-  const double strain = (state.x.x[size_t(behind)] - state.x.x[0]) / (behind * kLength / kElements) - 1;
+  const double strain = (state.position.x[size_t(behind)] - state.position.x[0]) / (behind * kLength / kElements) - 1;
   const double density = kBar.density / kBar.thickness;
   EXPECT_LE(test::figure("stress behind it [Pa]", kBar.modulus * strain, density * kSpeed * velocity), 0.01);
 }
@@ -89,8 +89,8 @@ State swing_start(const Model& model) {
   for (size_t n = 0; n < size_t(model.node_count()); ++n) {
     const double x = model.scene().mesh.rest[n].x() / kLength;
     if (x == 0) continue;
-    state.v.z[n] = 40 * x * x;
-    state.w.x[n] = -80 * x / kLength;
+    state.velocity.z[n] = 40 * x * x;
+    state.director_rate.x[n] = -80 * x / kLength;
   }
   return state;
 }
@@ -203,14 +203,14 @@ TEST(Chain, HangsInACatenary) {
   const double slope = std::acos(span / length);  // starts as a V, its fibres at rest
   for (size_t n = 0; n < size_t(model.node_count()); ++n) {
     const double s = scene.mesh.rest[n].x(), side = s < length / 2 ? -1 : 1;
-    put(state.x, n,
+    put(state.position, n,
         {s * std::cos(slope), scene.mesh.rest[n].y(), -std::min(s, length - s) * std::sin(slope)});
-    put(state.d, n, {-side * std::sin(slope), 0, std::cos(slope)});
+    put(state.director, n, {-side * std::sin(slope), 0, std::cos(slope)});
   }
-  put(state.d, kElements / 2, {0, 0, 1});
-  put(state.d, kElements / 2 + kElements + 1, {0, 0, 1});
+  put(state.director, kElements / 2, {0, 0, 1});
+  put(state.director, kElements / 2 + kElements + 1, {0, 0, 1});
   test::settle(model, state, 1e-5 * span);
-  EXPECT_LE(test::figure("catenary, sag / span", -state.x.z[kElements / 2] / span, 0.2924), 0.01);
+  EXPECT_LE(test::figure("catenary, sag / span", -state.position.z[kElements / 2] / span, 0.2924), 0.01);
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ inline void settle(const Model& model, State& state, double remainder) {
     for (std::int64_t k = 0; k < between; ++k) advance(model, state, work);
     double speed = 0;
     for (size_t n = 0; n < size_t(model.node_count()); ++n) {
-      const double v = get(state.v, n).norm();
+      const double v = get(state.velocity, n).norm();
       if (!(v <= speed)) speed = v;  // NaN stays
     }
     quiet = speed * constant <= remainder ? quiet + 1 : 0;

@@ -40,10 +40,10 @@ TEST(Patch, StretchesEvenlyOnDistortedElements) {
   const auto field = [](const Eigen::Vector2d& X) {
     return Eigen::Vector3d(X.x() + 1e-3 * (X.x() + 0.5 * X.y()), X.y() + 1e-3 * (X.y() + 0.5 * X.x()), 0);
   };
-  for (const int n : scene.clamped) put(state.x, size_t(n), field(scene.mesh.rest[size_t(n)]));
+  for (const int n : scene.clamped) put(state.position, size_t(n), field(scene.mesh.rest[size_t(n)]));
   test::settle(model, state, 1e-13);
   for (size_t n = 4; n < 8; ++n)
-    EXPECT_LE((get(state.x, n) - field(scene.mesh.rest[n])).norm(), 1e-12 * kWidth);
+    EXPECT_LE((get(state.position, n) - field(scene.mesh.rest[n])).norm(), 1e-12 * kWidth);
   Snapshot strains;
   model.shell().strains(state, strains);
   const double strain = std::hypot(1.001, 5e-4) - 1, angle = 2 * std::atan(5e-4 / 1.001);
@@ -71,15 +71,15 @@ double bending_patch_error(double thickness, double a, double b, double c) {
   };
   for (const int n : scene.clamped) {
     const Eigen::Vector2d X = scene.mesh.rest[size_t(n)];
-    state.x.z[size_t(n)] = deflection(X);
-    put(state.d, size_t(n),
+    state.position.z[size_t(n)] = deflection(X);
+    put(state.director, size_t(n),
         Eigen::Vector3d(-k * (a * X.x() + b / 2 * X.y()), -k * (c * X.y() + b / 2 * X.x()), 1).normalized());
   }
   test::settle(model, state, 1e-8 * k);
   double error = 0, largest = 0;
   for (size_t n = 4; n < 8; ++n) {
     const double exact = deflection(scene.mesh.rest[n]);
-    error = std::max(error, std::abs(state.x.z[n] - exact));
+    error = std::max(error, std::abs(state.position.z[n] - exact));
     largest = std::max(largest, std::abs(exact));
   }
   return error / largest;

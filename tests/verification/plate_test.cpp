@@ -30,7 +30,7 @@ double coefficient(Edge edge, Push push, int n, double expected) {
   }
   const Model model(scene);
   const State state = test::at_rest(model, 1e-5 * kSmall * kPlate.thickness);
-  return state.x.z[size_t(middle)] / unit;
+  return state.position.z[size_t(middle)] / unit;
 }
 
 struct PlateCase {

@@ -20,7 +20,7 @@ Tip under_end_shear(double k, int n) {
   scene.loads = Loads{.forces = {{n, {0, 0, force / 2}}, {2 * n + 1, {0, 0, force / 2}}}};
   const Model model(scene);
   const State state = test::at_rest(model, 1e-6 * kLength);
-  return {state.x.x[size_t(n)], state.x.z[size_t(n)]};
+  return {state.position.x[size_t(n)], state.position.z[size_t(n)]};
 }
 
 /// Tip of a strip bent by an end moment into a circle.
@@ -30,7 +30,7 @@ Tip rolled_up(int n) {
   scene.loads = Loads{.moments = {{n, {0, -moment / 2, 0}}, {2 * n + 1, {0, -moment / 2, 0}}}};
   const Model model(scene);
   const State state = test::at_rest(model, 1e-6 * kLength);
-  return {state.x.x[size_t(n)], state.x.z[size_t(n)]};
+  return {state.position.x[size_t(n)], state.position.z[size_t(n)]};
 }
 
 // Sze, Liu, Lo (2004), table 1 and Mattiasson (1981): W / L and U / L of the elastica, D theta'' = - P cos
@@ -73,7 +73,7 @@ double seen_stiffness(int points, double tension, double compression) {
       Loads{.moments = {{kElements, {0, -moment / 2, 0}}, {2 * kElements + 1, {0, -moment / 2, 0}}}};
   const Model model(scene);
   const State state = test::at_rest(model, 1e-8 * kLength);
-  return angle / std::atan2(-state.d.x[kElements], state.d.z[kElements]);
+  return angle / std::atan2(-state.director.x[kElements], state.director.z[kElements]);
 }
 
 // Two moduli, no resultant force: D = t^3/12 4 Et Ec / (sqrt Et + sqrt Ec)^2, neutral line where stresses

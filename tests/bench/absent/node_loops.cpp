@@ -20,12 +20,12 @@ void kick_nodes(const Model& model, State& state, Workspace& work) {
   Lanes power(0.0);
   for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
     const Vec3<Lanes> force = work.entries[0].force.lanes(n), all = work.entries[0].moment.lanes(n);
-    const Vec3<Lanes> v = state.v.lanes(n), w = state.w.lanes(n), d = state.d.lanes(n);
+    const Vec3<Lanes> v = state.velocity.lanes(n), w = state.director_rate.lanes(n), d = state.director.lanes(n);
     const Lanes mobility = load(&model.inverse_mass()[n]), turning = load(&model.inverse_inertia()[n]);
     const Vec3<Lanes> moment = all - dot(all, d) * d;
     const Vec3<Lanes> v_new = v + (h * mobility) * force, w_new = w + (h * turning) * moment;
-    state.v.set_lanes(n, v_new);
-    state.w.set_lanes(n, w_new);
+    state.velocity.set_lanes(n, v_new);
+    state.director_rate.set_lanes(n, w_new);
     Lanes free(0.5), free_turning(0.5);
     std::experimental::where(mobility == zero, free) = zero;
     std::experimental::where(turning == zero, free_turning) = zero;

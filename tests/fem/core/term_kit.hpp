@@ -74,9 +74,9 @@ inline void expect_derivative_of_energy(const TermSubject& subject) {
   for (size_t n = 0; n < exact.force.size(); ++n) {
     for (int k = 0; k < 3; ++k) {
       force_error =
-          std::max(force_error, std::abs(exact.force[n][k] - difference(state.x, n, k, subject.length_step)));
+          std::max(force_error, std::abs(exact.force[n][k] - difference(state.position, n, k, subject.length_step)));
       moment_error = std::max(moment_error,
-                              std::abs(exact.moment[n][k] - difference(state.d, n, k, subject.angle_step)));
+                              std::abs(exact.moment[n][k] - difference(state.director, n, k, subject.angle_step)));
     }
   }
   EXPECT_LE(force_error, subject.tolerance * force);
@@ -90,7 +90,7 @@ inline void expect_no_resultant(const TermSubject& subject) {
   double size = 0;
   for (size_t n = 0; n < f.force.size(); ++n) {
     force += f.force[n];
-    moment += get(subject.state.x, n).cross(f.force[n]) + get(subject.state.d, n).cross(f.moment[n]);
+    moment += get(subject.state.position, n).cross(f.force[n]) + get(subject.state.director, n).cross(f.moment[n]);
     size += f.force[n].norm();
   }
   EXPECT_GT(size, 0);
@@ -150,7 +150,7 @@ inline double growth(Scene scene, double share, int steps, const std::function<S
     kick_nodes(model, state, work);
     drift_nodes(model, state);
     for (size_t n = 0; n < size_t(model.node_count()); ++n) {
-      const double v = get(state.v, n).norm();
+      const double v = get(state.velocity, n).norm();
       if (!std::isfinite(v)) return std::numeric_limits<double>::infinity();
       speed[size_t(2 * k / steps)] = std::max(speed[size_t(2 * k / steps)], v);
     }

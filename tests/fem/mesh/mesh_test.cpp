@@ -70,8 +70,8 @@ double patch_error(const Mesh& mesh) {
   gradient << 1.01, 0.2, -0.1, 0.98, 0.3, 0.1;
   const Eigen::Vector3d normal = gradient.col(0).cross(gradient.col(1)).normalized();
   for (size_t n = 0; n < mesh.rest.size(); ++n) {
-    test::put(state.x, n, gradient * mesh.rest[n]);
-    test::put(state.d, n, normal);
+    test::put(state.position, n, gradient * mesh.rest[n]);
+    test::put(state.director, n, normal);
   }
   std::vector<Forces> entries = model.shell().entries();
   model.shell().forces(state, entries.data());

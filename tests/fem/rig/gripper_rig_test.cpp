@@ -38,7 +38,7 @@ struct Bench {
     rig.emplace(options, nodes, none, none, nodes, 0.0);
     const int count = options.count();
     state = {};
-    state.x = state.v = state.d = state.w = VectorField(count);
+    state.position = state.velocity = state.director = state.director_rate = VectorField(count);
     rig->place(state, 0);
     scratch = rig->scratch();
     force = moment = mean_v = mean_w = VectorField(count);

@@ -129,7 +129,7 @@ TEST(RigDrape, ReleasesNodesWithTheVelocitiesThatTheyHadAndLetsThemFall) {
   while (state.time < at + 0.02) {
     const bool released = state.pads[0].released;
     before.clear();
-    for (const int n : tied) before.push_back(get(state.v, size_t(n)));
+    for (const int n : tied) before.push_back(get(state.velocity, size_t(n)));
     state.dt = state.dt_before = model.dt();
     model.rig()->let_go(state, drive);
     compute_forces(model, state, work);
@@ -141,7 +141,7 @@ TEST(RigDrape, ReleasesNodesWithTheVelocitiesThatTheyHadAndLetsThemFall) {
     advance_clock(state);
     if (released || !state.pads[0].released) continue;
     for (size_t k = 0; k < tied.size(); ++k)
-      EXPECT_LE((get(state.v, size_t(tied[k])) - before[k]).norm(), 0.02);  // one step's forces
+      EXPECT_LE((get(state.velocity, size_t(tied[k])) - before[k]).norm(), 0.02);  // one step's forces
     mean = before[0].z();
   }
   EXPECT_TRUE(state.pads[0].released);
@@ -149,7 +149,7 @@ TEST(RigDrape, ReleasesNodesWithTheVelocitiesThatTheyHadAndLetsThemFall) {
   double lift = 0, mass = 0;
   const std::vector<double> area = nodal_areas(scene.mesh);
   for (size_t n = 0; n < area.size(); ++n) {
-    lift += area[n] * state.v.z[n];
+    lift += area[n] * state.velocity.z[n];
     mass += area[n];
   }
   EXPECT_LE(lift / mass, mean - 0.1);

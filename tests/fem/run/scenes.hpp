@@ -62,15 +62,15 @@ inline void disturb(State& state, int nodes, double size, double angle, unsigned
   for (size_t n = 0; n < size_t(nodes); ++n) {
     const Eigen::Vector3d move(unit(random), unit(random), unit(random)),
         turn(unit(random), unit(random), unit(random));
-    put(state.x, n, get(state.x, n) + size * move);
-    put(state.d, n, (get(state.d, n) + angle * turn).normalized());
+    put(state.position, n, get(state.position, n) + size * move);
+    put(state.director, n, (get(state.director, n) + angle * turn).normalized());
   }
 }
 
 /// Turns the whole state about the origin.
 inline void rotate(State& state, int nodes, const Eigen::Matrix3d& by) {
   for (size_t n = 0; n < size_t(nodes); ++n) {
-    for (VectorField* field : {&state.x, &state.v, &state.d, &state.w}) put(*field, n, by * get(*field, n));
+    for (VectorField* field : {&state.position, &state.velocity, &state.director, &state.director_rate}) put(*field, n, by * get(*field, n));
   }
 }
 

@@ -147,18 +147,18 @@ TEST(Simulate, ConservesMomentumInFreeFlight) {
   State state = model.flat_state(0);
   const auto nodes = size_t(model.node_count());
   for (size_t n = 0; n < nodes; ++n) {  // a spin about a slanted axis, and a stretch
-    const Eigen::Vector3d x = get(state.x, n), spin(1, 2, 5);
-    test::put(state.v, n,
+    const Eigen::Vector3d x = get(state.position, n), spin(1, 2, 5);
+    test::put(state.velocity, n,
               spin.cross(x) + Eigen::Vector3d(0.3, 0.2, 0.1) + 0.5 * Eigen::Vector3d(x.x(), 0, 0));
-    test::put(state.w, n, spin.cross(Eigen::Vector3d::UnitZ()));
+    test::put(state.director_rate, n, spin.cross(Eigen::Vector3d::UnitZ()));
   }
   const auto momenta = [&] {
     Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
     for (size_t n = 0; n < nodes; ++n) {
-      linear += model.mass()[n] * get(state.v, n);
+      linear += model.mass()[n] * get(state.velocity, n);
       // Velocities belong to t - dt/2; drifting with them back by half a step changes no x cross v.
-      angular += model.mass()[n] * get(state.x, n).cross(get(state.v, n)) +
-                 model.inertia()[n] * get(state.d, n).cross(get(state.w, n));
+      angular += model.mass()[n] * get(state.position, n).cross(get(state.velocity, n)) +
+                 model.inertia()[n] * get(state.director, n).cross(get(state.director_rate, n));
     }
     return std::pair{linear, angular};
   };
@@ -243,8 +243,8 @@ TEST(Simulate, KeepsTheEnergyOfAnElasticStripThatSwings) {
   for (size_t n = 0; n < size_t(model.node_count()); ++n) {
     const double x = (scene.mesh.rest[n].x() + 0.05) / 0.1;
     if (model.mass()[n] == 0) continue;
-    state.v.z[n] = x * x;
-    state.w.x[n] = -2 * x / 0.1;
+    state.velocity.z[n] = x * x;
+    state.director_rate.x[n] = -2 * x / 0.1;
   }
   const double start = kinetic_energy(model, state);
   Workspace work(model);

@@ -40,8 +40,8 @@ Fabric stiff_fabric() {
 void trellis(const Model& model, State& state, double shear, double strain = 1e-4) {
   for (size_t n = 0; n < size_t(model.node_count()); ++n) {
     const Eigen::Vector2d X = (1 + strain) * model.scene().mesh.rest[n];
-    test::put(state.x, n,
-              {X.x() + std::sin(shear) * X.y(), std::cos(shear) * X.y(), test::get(state.x, n).z()});
+    test::put(state.position, n,
+              {X.x() + std::sin(shear) * X.y(), std::cos(shear) * X.y(), test::get(state.position, n).z()});
   }
 }
 
@@ -67,7 +67,7 @@ double ply_ratio(const std::string& what, const Model& model, const State& state
   const Model ply(std::move(bare));
   constexpr double kLonger = 6e-5;  // beyond the kink, and within the slopes that the estimate looks ahead to
   State longer = state;
-  for (auto* part : {&longer.x.x, &longer.x.y, &longer.x.z}) {
+  for (auto* part : {&longer.position.x, &longer.position.y, &longer.position.z}) {
     for (double& value : *part) value *= 1 + kLonger;
   }
   StepScratch scratch(ply);
@@ -191,8 +191,8 @@ double growth_at(Scene scene, double share) {
   State state = flat(model);
   test::disturb(state, model.node_count(), 1e-10, 1e-9);
   for (const int n : scene.clamped) {
-    test::put(state.x, size_t(n), test::get(flat(model).x, size_t(n)));
-    test::put(state.d, size_t(n), Eigen::Vector3d::UnitZ());
+    test::put(state.position, size_t(n), test::get(flat(model).x, size_t(n)));
+    test::put(state.director, size_t(n), Eigen::Vector3d::UnitZ());
   }
   Workspace work(model);
   double first = 0, largest = 0;

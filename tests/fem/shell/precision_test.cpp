@@ -103,7 +103,7 @@ TEST_P(SinglePrecision, HasTheForcesOfDoubleInRandomDeformedStates) {
       // Bent, sheared by up to 30 degrees, stretched by up to a percent.
       for (size_t n = 0; n < size_t(nodes()); ++n) {
         const Eigen::Vector2d X = scene.mesh.rest[n];
-        put(state.x, n,
+        put(state.position, n,
             {X.x() + 0.2 * X.y(), (1 + 0.005 * seed / 5) * X.y() + 0.3 * X.x(), 0.1 * X.x() * X.x()});
       }
       test::disturb(state, nodes(), 2e-5, 0.05, seed);
@@ -133,7 +133,7 @@ TEST_P(SinglePrecision, HasNoForcesAtRestWhereverThePlyIsAndHoweverItIsTurned) {
         const Eigen::Vector3d axis = Eigen::Vector3d(1, 2, 3).normalized();
         test::rotate(state, nodes(), Eigen::AngleAxisd(angle, axis).toRotationMatrix());
         for (size_t n = 0; n < size_t(nodes()); ++n)
-          put(state.x, n, get(state.x, n) + far * Eigen::Vector3d(1, -0.7, 0.3));
+          put(state.position, n, get(state.position, n) + far * Eigen::Vector3d(1, -0.7, 0.3));
       };
       const Forced rest = forced(scene, Precision::single_lanes, move);
       double strain = 0;
@@ -156,7 +156,7 @@ TEST_P(SinglePrecision, HasForcesWithoutResultant) {
   double size = 0;
   for (size_t n = 0; n < f.force.size(); ++n) {
     sum += f.force[n];
-    turning += get(f.state.x, n).cross(f.force[n]) + get(f.state.d, n).cross(f.moment[n]);
+    turning += get(f.state.position, n).cross(f.force[n]) + get(f.state.director, n).cross(f.moment[n]);
     size += f.force[n].norm();
   }
   EXPECT_LE(sum.norm(), 1e-12 * size);

@@ -64,8 +64,8 @@ TEST_P(ShellTerms, PassTheTermKit) {
 // Constant membrane strain and constant curvature fields must leave inner nodes free of force and moment.
 TEST_P(ShellTerms, PassThePatchTest) {
   for (size_t n = 0; n < nodes; ++n) {
-    const Eigen::Vector3d x = get(state.x, n);
-    put(state.x, n, {x.x() + 1e-3 * (x.x() + 0.5 * x.y()), x.y() + 1e-3 * (x.y() + 0.5 * x.x()), x.z()});
+    const Eigen::Vector3d x = get(state.position, n);
+    put(state.position, n, {x.x() + 1e-3 * (x.x() + 0.5 * x.y()), x.y() + 1e-3 * (x.y() + 0.5 * x.x()), x.z()});
   }
   compute();
   double inner = 0, edge = 0;
@@ -97,7 +97,7 @@ TEST(Shell, StretchesAlongAFibreWithTheTablesStress) {
   const Model model(scene);
   State state = model.flat_state(0);
   const double strain = 0.002;
-  for (size_t n = 0; n < 4; ++n) state.x.x[n] *= 1 + strain;
+  for (size_t n = 0; n < 4; ++n) state.position.x[n] *= 1 + strain;
   auto forces = model.terms().front()->entries();
   model.terms().front()->forces(state, forces.data());
   const double pull = std::abs(forces[0].force.x[1] + forces[0].force.x[3]);
@@ -118,7 +118,7 @@ TEST(Shell, ShearsWithTheTablesStressConjugateToTheAngle) {
   };
   double power = 0;
   for (size_t n = 0; n < 4; ++n)
-    put(state.x, n, place(scene.mesh.rest[n].x(), scene.mesh.rest[n].y(), angle));
+    put(state.position, n, place(scene.mesh.rest[n].x(), scene.mesh.rest[n].y(), angle));
   auto forces = model.terms().front()->entries();
   model.terms().front()->forces(state, forces.data());
   for (size_t n = 0; n < 4; ++n) {

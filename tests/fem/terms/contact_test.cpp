@@ -22,7 +22,7 @@ struct Touch {
       : term(make_contact(mold, friction,
                           {std::vector<double>(count, 1.0), std::vector<double>(count, damping)}, kHalf)),
         entries(term->entries()) {
-    state.x = state.v = state.anchor = VectorField(int(count));
+    state.position = state.velocity = state.anchor = VectorField(int(count));
     state.stuck.assign(padded(int(count)), 0.0);
   }
   Eigen::Vector3d force(size_t n = 0) {
@@ -49,7 +49,7 @@ TEST(Contact, MeasuresGapAndNormalAsTheClosestPointDoes) {
           Eigen::Vector2d(unit(random), unit(random)).cwiseProduct(extent.upper - extent.lower);
       normal[n] = mold.normal(at.x(), at.y());
       depth[n] = 2e-5 * unit(random);
-      test::put(touch.state.x, n, mold.point(at.x(), at.y()) + (kHalf - depth[n]) * normal[n]);
+      test::put(touch.state.position, n, mold.point(at.x(), at.y()) + (kHalf - depth[n]) * normal[n]);
     }
     touch.force();
     double steepest = 1;
@@ -75,7 +75,7 @@ TEST(Contact, DoesNoWorkOnANodeThatIsDraggedAroundALoop) {
   double sum = 0, size = 0;
   for (int k = 0; k < kPoints; ++k) {
     const double turn = 2 * std::numbers::pi / kPoints;
-    test::put(touch.state.x, 0, place((k + 0.5) * turn));
+    test::put(touch.state.position, 0, place((k + 0.5) * turn));
     const double work = touch.force().dot(place((k + 1) * turn) - place(k * turn));
     sum += work;
     size += std::abs(work);
@@ -86,13 +86,13 @@ TEST(Contact, DoesNoWorkOnANodeThatIsDraggedAroundALoop) {
 
 TEST(Contact, PressesAndNeverPulls) {
   Touch touch(inclined_plane(0), 1, 1e-3);
-  test::put(touch.state.x, 0, {0, 0, kHalf - 1e-5});
-  test::put(touch.state.v, 0, {0, 0, -0.01});
+  test::put(touch.state.position, 0, {0, 0, kHalf - 1e-5});
+  test::put(touch.state.velocity, 0, {0, 0, -0.01});
   EXPECT_NEAR(touch.force().z(), 1e-5 + 1e-5, 1e-12);
-  test::put(touch.state.v, 0, {0, 0, 1});
+  test::put(touch.state.velocity, 0, {0, 0, 1});
   EXPECT_EQ(touch.force().z(), 0);
-  test::put(touch.state.x, 0, {0, 0, kHalf + 1e-9});
-  test::put(touch.state.v, 0, {0, 0, -1});
+  test::put(touch.state.position, 0, {0, 0, kHalf + 1e-9});
+  test::put(touch.state.velocity, 0, {0, 0, -1});
   EXPECT_EQ(touch.force().z(), 0);
 }
 
@@ -100,8 +100,8 @@ TEST(Contact, PressesAndNeverPulls) {
 TEST(Friction, ActsInTheStepInWhichANodeTouchesAnew) {
   for (const double speed : {0.03, 3.0}) {  // along the mold, at 0.1 m/s towards it; mu = 0.5
     Touch touch(inclined_plane(0), 1, 1e-3, 0.5);
-    test::put(touch.state.x, 0, {0, 0, kHalf - 1e-6});
-    test::put(touch.state.v, 0, {speed, 0, -0.1});
+    test::put(touch.state.position, 0, {0, 0, kHalf - 1e-6});
+    test::put(touch.state.velocity, 0, {speed, 0, -0.1});
     const double push = touch.force().z();
     const Eigen::Vector3d held = test::get(touch.entries[1].force, 0);
     EXPECT_NEAR(held.x(), -push * std::min(speed / 0.1, 0.5), 1e-9 * push);
@@ -127,11 +127,11 @@ struct Incline {
     for (size_t n = 0; n < size_t(model->node_count()); ++n) {
       const double weight = 0.314 * area[n] * kGravity * std::cos(angle);
       const double depth = weight / (scene.options.contact_stiffness * stiffness.translation[n]);
-      test::put(state.x, n, test::get(state.x, n) - sunk * depth * scene.mold->normal(0, 0));
+      test::put(state.position, n, test::get(state.position, n) - sunk * depth * scene.mold->normal(0, 0));
     }
     work.emplace(*model);
   }
-  [[nodiscard]] Eigen::Vector3d middle() const { return test::get(state.x, size_t(model->node_count() / 2)); }
+  [[nodiscard]] Eigen::Vector3d middle() const { return test::get(state.position, size_t(model->node_count() / 2)); }
   /// Distance moved by the sheet's middle in `time`.
   double slide(double time) {
     const Eigen::Vector3d start = middle();
@@ -187,7 +187,7 @@ TEST(Friction, LetsASheetSlideAboveItsAngleWithTheClosedFormAcceleration) {
 TEST(Friction, StopsASlidingSheetAfterVSquaredOverTwoMuG) {
   constexpr double kSpeed = 0.5, kCoefficient = 0.5;
   Incline incline(0, kCoefficient, 1);
-  for (size_t n = 0; n < 9; ++n) incline.state.v.x[n] = kSpeed;
+  for (size_t n = 0; n < 9; ++n) incline.state.velocity.x[n] = kSpeed;
   const double path = kSpeed * kSpeed / (2 * kCoefficient * kGravity);
   EXPECT_NEAR(incline.slide(0.15), path, 1e-3 * path);
   EXPECT_LE(incline.slide(0.05), 1e-12);
@@ -207,7 +207,7 @@ TEST(Contact, CarriesTheWeightOfAPlyAtRest) {
 TEST(Contact, LetsABounceDieAndOnlyTakesEnergy) {
   Incline incline(0, 0.5, 0);
   constexpr double kDrop = 1e-3;
-  for (size_t n = 0; n < 9; ++n) incline.state.x.z[n] += kDrop;
+  for (size_t n = 0; n < 9; ++n) incline.state.position.z[n] += kDrop;
   double highest = kDrop, taken = 0;
   for (int k = 0; k < 10; ++k) {  // touches down after 14 ms
     incline.slide(0.02);
@@ -247,7 +247,7 @@ TEST(Contact, IsStableAtTheBoundOfTheStep) {
     }
     double fastest = 0;
     for (size_t n = 0; n < size_t(model.node_count()); ++n)
-      fastest = std::max(fastest, test::get(state.v, n).norm());
+      fastest = std::max(fastest, test::get(state.velocity, n).norm());
     EXPECT_LE(fastest, 100 * start) << damping;
   }
 }
@@ -261,12 +261,12 @@ TEST(Start, OnTheMoldTouchesItFlatInItsTangentPlane) {
   scene.angle = 0.4;
   scene.start = Start::on_mold;
   const State state = Model(scene).flat_state(7);
-  const ClosestPoint foot = scene.mold->closest(test::get(state.x, 4));
+  const ClosestPoint foot = scene.mold->closest(test::get(state.position, 4));
   EXPECT_NEAR(foot.signed_distance, kHalf, 1e-12);
   EXPECT_LE((foot.foot.head<2>() - scene.position).norm(), 1e-12);
   for (size_t n = 0; n < 9; ++n) {
-    EXPECT_LE((test::get(state.d, n) - foot.normal).norm(), 1e-12);
-    EXPECT_LE(std::abs((test::get(state.x, n) - test::get(state.x, 4)).dot(foot.normal)), 1e-15);
+    EXPECT_LE((test::get(state.director, n) - foot.normal).norm(), 1e-12);
+    EXPECT_LE(std::abs((test::get(state.position, n) - test::get(state.position, 4)).dot(foot.normal)), 1e-15);
   }
   scene.mold.reset();
   EXPECT_THROW(Model{scene}, std::invalid_argument);

@@ -40,8 +40,8 @@ struct Ply {
     std::uniform_real_distribution<double> unit(0.5, 1.5);
     for (double& m : mass) m = kNodeMass * unit(random);
     const auto count = size_t(mesh.node_count());
-    state.x = state.d = VectorField(mesh.node_count());
-    for (size_t n = 0; n < count; ++n) put(state.x, n, {mesh.rest[n].x(), mesh.rest[n].y(), 0});
+    state.position = state.director = VectorField(mesh.node_count());
+    for (size_t n = 0; n < count; ++n) put(state.position, n, {mesh.rest[n].x(), mesh.rest[n].y(), 0});
     state.edges.fill(VectorField(mesh.node_count()));
   }
 
@@ -120,7 +120,7 @@ Edges edges_of(const Ply& ply, int along) {
   Eigen::Index row = 0;
   for (const auto& [nodes, mass] : masses) {
     const Eigen::Vector3d n =
-        (get(ply.state.x, size_t(nodes.second)) - get(ply.state.x, size_t(nodes.first))).normalized();
+        (get(ply.state.position, size_t(nodes.second)) - get(ply.state.position, size_t(nodes.first))).normalized();
     edges.rows.row(row).segment<3>(3 * nodes.first) = -n;
     edges.rows.row(row).segment<3>(3 * nodes.second) = n;
     edges.mass[row++] = mass;
@@ -181,7 +181,7 @@ template <class F>
 VectorXd force_of(const Ply& ply, const F& acceleration) {
   VectorXd force(ply.size());
   for (size_t n = 0; n < ply.mass.size(); ++n)
-    force.segment<3>(3 * Eigen::Index(n)) = ply.mass[n] * acceleration(get(ply.state.x, n));
+    force.segment<3>(3 * Eigen::Index(n)) = ply.mass[n] * acceleration(get(ply.state.position, n));
   return force;
 }
 
@@ -248,7 +248,7 @@ TEST(FibreInertia, KeepsMomentumAndAngularMomentum) {
     for (size_t n = 0; n < ply.mass.size(); ++n) {
       const Eigen::Vector3d by = change.segment<3>(3 * Eigen::Index(n));
       sum += by;
-      turn += get(ply.state.x, n).cross(by);
+      turn += get(ply.state.position, n).cross(by);
     }
     EXPECT_LE(sum.norm(), 1e-13 * change.norm());
     EXPECT_LE(turn.norm(), 1e-14 * change.norm());  // arms of some cm
