@@ -13,7 +13,8 @@ namespace drapeplan {
 enum class Generators {
   perpendicular,  ///< geodesics at right angles on the surface; the first one projects to the warp direction
   axes,           ///< geodesics whose directions at the start project to the warp and weft directions
-  mid_sides,  ///< geodesics from the start point to the four mid-sides of the mold's extent (the text of [Krogh])
+  mid_sides,      ///< geodesics from the start point to the four mid-sides of the mold's extent (the text of
+                  ///< [Krogh])
 };
 
 /// Flat ply. Ply frame: u along the warp, v along the weft; origin in a rectangle's middle, or as the
@@ -47,9 +48,9 @@ struct Net {
 /// The ply's corners, counter-clockwise: its outline, or the rectangle's corners from (-,-).
 Polygon corners_of(const Ply& ply);
 
-/// Maps the ply's bounding box onto the mold. [Krogh], "Energy Mapping Algorithm" (after Bergsma and Huisman):
-/// the fibre lines through the start point are geodesics; every other node is the free corner of a bilinear
-/// element that minimises the fibre strain energy of Eq. (3).
+/// Maps the ply's bounding box onto the mold. [Krogh], "Energy Mapping Algorithm" (after Bergsma and
+/// Huisman): the fibre lines through the start point are geodesics; every other node is the free corner of a
+/// bilinear element that minimises the fibre strain energy of Eq. (3).
 /// @throws std::domain_error with the place where the mold ends or the minimisation fails.
 Net map_ply(const Mold& mold, const Ply& ply, const MappingOptions& options);
 

@@ -13,7 +13,7 @@ struct FemOptions {
   int section_points = 3;    ///< through the thickness: 1, 3 or 5
   double mass_scaling = 20;  ///< factor on the mass; gravity acts on the unscaled mass ([Krogh]: up to 20)
   /// The step may be this many times longer: mass is added to the stretch of fibres alone.
-  double selective_scaling = 1;
+  double fibre_mass_scaling = 1;
   double target_step = 0;    ///< mass is added where the step would be smaller [s]; 0: nowhere
   double time_scaling = 1;   ///< the schedule is played this many times faster than written
   double step_safety = 0.9;  ///< share of the estimated stable step

@@ -19,7 +19,7 @@ struct SummaryParts {
 /// Books of one run [J]. Work is booked per term with the mean of the two half-step velocities, so that
 /// kinetic = external - internal - friction - contact - damping - constraint closes to round-off.
 struct Energies {
-  double kinetic = 0;        ///< that of mass added to fibres included
+  double kinetic = 0;        ///< that of fibre inertia included
   double internal = 0;       ///< work done on the fabric, its hourglass part included
   double external = 0;       ///< work of gravity, loads, actuators and grips
   double friction = 0;       ///< taken by friction, its elastic part included

@@ -27,7 +27,8 @@ std::uint64_t hash_state(const State& state, int node_count) {
   hash.add(state.dt);
   hash.add(state.dt_before);
   hash.add(state.stable_dt);
-  for (const VectorField* field : {&state.position, &state.velocity, &state.director, &state.director_rate, &state.anchor})
+  for (const VectorField* field :
+       {&state.position, &state.velocity, &state.director, &state.director_rate, &state.anchor})
     add(hash, *field, n);
   add(hash, state.stuck, n);
   add(hash, state.history, state.history.size());

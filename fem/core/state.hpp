@@ -23,7 +23,7 @@ enum class Book {
   load,
   release,
   grip,
-  added_mass
+  fibre_inertia
 };
 inline constexpr size_t kBooks = 12;
 
@@ -65,7 +65,7 @@ struct State {
   std::vector<double> stuck;    ///< 1: the node touched the mold at the last step; empty without friction
   std::vector<double> history;  ///< what elements remember of their strains; see fem/shell/term.hpp
   /// Directions of edges along warp and weft when the step was last chosen, by their first nodes; empty
-  /// without selective mass scaling.
+  /// without fibre inertia.
   std::array<VectorField, 2> edges;
   std::vector<PadState> pads;  ///< empty without a rig
   /// How the bounds of elements were spread over nodes when the step was last chosen [padded]: see

@@ -135,7 +135,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   const double share = options.step_safety * viscous_share(options.bulk_viscosity);
   const double needed = std::pow(rise * options.target_step / (2 * share), 2);
   for (size_t k = 0; k < n; ++k) own_mass_[k] = options.mass_scaling * unscaled[k];
-  if (options.selective_scaling > 1) stiffness = without_borne();
+  if (options.fibre_mass_scaling > 1) stiffness = stiffness_without_fibres();
   for (size_t k = 0; k < n; ++k) own_mass_[k] = std::max(own_mass_[k], needed * stiffness.translation[k]);
 
   mass_.assign(padded(int(n)), 0.0);
@@ -180,7 +180,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   bear_held_nodes();
   if (scene_.mold) add_contact(stiffness);
   stable_dt_ = stable_dt(stiffness);
-  if (options.selective_scaling > 1) add_fibre_inertia(rise);
+  if (options.fibre_mass_scaling > 1) add_fibre_inertia(rise);
   if (rig_) {
     // The joint's mobility: of the pad's mass, and of its inertia through the arm.
     const double arm = scene_.rig->joint_offset / scene_.rig->pad_radius;
@@ -199,21 +199,21 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   }
 }
 
-/// With selective scaling, mass on edges bears the fibres of rectangles; what is left keeps its bounds. Sets
+/// With fibre inertia, mass on edges bears the fibres of rectangles; what is left keeps its bounds. Sets
 /// the rate that those would have, over the scaling.
 /// @return what is left.
-NodalStiffness Model::without_borne() {
+NodalStiffness Model::stiffness_without_fibres() {
   if (scene_.options.step_interval == 0)
-    throw std::invalid_argument("selective_scaling needs a step that is chosen anew: step_interval above 0");
-  const std::vector<char> borne = shell_->borne();
-  if (std::none_of(borne.begin(), borne.end(), [](char can) { return can; }))
-    throw std::invalid_argument("selective_scaling needs elements that are rectangles along the fibres");
+    throw std::invalid_argument("fibre_mass_scaling needs a step that is chosen anew: step_interval above 0");
+  const std::vector<char> with_fibre_inertia = shell_->with_fibre_inertia();
+  if (std::none_of(with_fibre_inertia.begin(), with_fibre_inertia.end(), [](char can) { return can; }))
+    throw std::invalid_argument("fibre_mass_scaling needs elements that are rectangles along the fibres");
   NodalStiffness fibres(node_count()), left(node_count());
-  shell_->add_borne_stiffness(fibres);
+  shell_->add_fibre_stiffness(fibres);
   double rate2 = 0;
   for (size_t k = 0; k < own_mass_.size(); ++k) rate2 = std::max(rate2, fibres.translation[k] / own_mass_[k]);
-  selective_rate_ = std::sqrt(rate2) / scene_.options.selective_scaling;
-  shell_->add_unborne_stiffness(left);
+  fibre_inertia_rate_ = std::sqrt(rate2) / scene_.options.fibre_mass_scaling;
+  shell_->add_stiffness_without_fibres(left);
   if (scene_.loads) terms_.back()->add_stiffness(left);
   return left;
 }
@@ -223,12 +223,12 @@ void Model::add_fibre_inertia(double rise) {
   std::vector<double> mobility = mobility_;
   for (const int node : rig_ ? rig_->tied() : std::vector<int>())
     mobility[size_t(node)] = 1 / own_mass_[size_t(node)];
-  const double rate = rise * selective_rate_;
-  fibre_inertia_.emplace(scene_.mesh, shell_->borne(), shell_->borne_stretch(), rate, std::move(mobility),
-                         pad_nodes_);
-  selective_dt_ = stable_dt(rate);
-  shell_->set_borne_step(selective_dt_);
-  stable_dt_ = std::min(stable_dt_, selective_dt_);
+  const double rate = rise * fibre_inertia_rate_;
+  fibre_inertia_.emplace(scene_.mesh, shell_->with_fibre_inertia(), shell_->fibre_inertia_stretch(), rate,
+                         std::move(mobility), pad_nodes_);
+  fibre_inertia_dt_ = stable_dt(rate);
+  shell_->set_fibre_inertia_step(fibre_inertia_dt_);
+  stable_dt_ = std::min(stable_dt_, fibre_inertia_dt_);
 }
 
 /// Held nodes bear any stiffness; tied ones with their share of their pad.
@@ -260,9 +260,9 @@ void Model::add_contact(NodalStiffness& stiffness) {
   double highest = contact_rise(options) * 2 / stable_dt(slow);
   ContactSprings springs{std::vector<double>(n), std::vector<double>(n)};
   for (size_t k = 0; k < n; ++k) springs.stiffness[k] = options.contact_stiffness * slow.translation[k];
-  if (options.selective_scaling > 1) {
-    highest = contact_rise(options) * selective_rate_;
-    const double most = kBareShare * selective_rate_ * selective_rate_;
+  if (options.fibre_mass_scaling > 1) {
+    highest = contact_rise(options) * fibre_inertia_rate_;
+    const double most = kBareShare * fibre_inertia_rate_ * fibre_inertia_rate_;
     for (size_t k = 0; k < n; ++k) springs.stiffness[k] = std::min(springs.stiffness[k], most * own_mass_[k]);
   }
   const auto dashpots = [&options](ContactSprings& of, const std::vector<double>& mass) {
@@ -308,8 +308,8 @@ double Model::stable_dt(double highest_rate) const {
   return 2 / highest_rate * viscous_share(scene_.options.bulk_viscosity);
 }
 
-void Model::lighten(const NodalStiffness& stiffness, double highest_rate,
-                    std::vector<double>& lightness) const {
+void Model::update_lightness(const NodalStiffness& stiffness, double highest_rate,
+                             std::vector<double>& lightness) const {
   namespace stdx = std::experimental;
   constexpr double kLeast = 0.1;  // less gains little, and takes long to find back when stresses move on
   const Lanes rate(highest_rate), rate2 = rate * rate;
@@ -359,7 +359,7 @@ std::uint64_t Model::fingerprint() const {
   add(std::array{scene_.fabric.rate_floor, scene_.fabric.rate_filter, double(scene_.fabric.shear_measure),
                  scene_.fabric.transverse_shear_modulus});
   const FemOptions& o = scene_.options;
-  add(std::array{stable_dt_, alpha_, o.selective_scaling, o.time_scaling, o.step_safety,
+  add(std::array{stable_dt_, alpha_, o.fibre_mass_scaling, o.time_scaling, o.step_safety,
                  double(o.section_points), double(o.fibre_points), double(o.step_interval), o.hourglass,
                  o.bulk_viscosity, o.contact_stiffness, o.contact_damping, scene_.gravity.value_or(0),
                  scene_.friction.value_or(-1), scene_.position.x(), scene_.position.y(), scene_.angle});
@@ -396,7 +396,7 @@ std::vector<std::string> Model::term_names() const {
   for (const auto& term : terms_) names.emplace_back(term->name());
   const int points = scene_.options.section_points;
   names.front() += ", " + std::to_string(points) + (points == 1 ? " section point" : " section points");
-  if (fibre_inertia_) names.emplace_back("mass on fibres");
+  if (fibre_inertia_) names.emplace_back("fibre inertia");
   if (scene_.damping) names.emplace_back("mass damping");
   if (rig_) names.emplace_back(scene_.rig->interlinks ? "gripper rig with interlinks" : "gripper rig");
   if (rig_ && scene_.rig->fixed) names.emplace_back("fixed joint");

@@ -61,8 +61,8 @@ class Model {
 
   /// Stable step for all strains that the laws allow [s]; see stable_step() for that of a state.
   [[nodiscard]] double stable_dt() const { return stable_dt_; }
-  /// Step at which mass added to fibres bears the steepest ones [s]; 0 without selective scaling.
-  [[nodiscard]] double selective_dt() const { return selective_dt_; }
+  /// Step at which fibre inertia bears the steepest ones [s]; 0 without fibre inertia.
+  [[nodiscard]] double fibre_inertia_dt() const { return fibre_inertia_dt_; }
   /// The step played where it does not change with the state: step_safety times stable_dt [s].
   [[nodiscard]] double dt() const { return scene_.options.step_safety * stable_dt_; }
   /// Longest step that the actuators bear: steps that follow the state are longer than dt() [s].
@@ -77,7 +77,8 @@ class Model {
   /// are raised to hold over that.
   void bear_released(const State& state, NodalStiffness& stiffness) const;
   /// Lowers the lightness of nodes whose own rate is below the highest, so that it becomes that.
-  void lighten(const NodalStiffness& stiffness, double highest_rate, std::vector<double>& lightness) const;
+  void update_lightness(const NodalStiffness& stiffness, double highest_rate,
+                        std::vector<double>& lightness) const;
   /// Damping rate on the scaled mass [1/s]: with a mass s times larger, modes are sqrt(s) times slower, and
   /// so is what damps them critically. s: of the whole ply.
   [[nodiscard]] double alpha() const { return alpha_; }
@@ -108,7 +109,7 @@ class Model {
   [[nodiscard]] const std::vector<int>& guided() const { return guided_; }
 
  private:
-  NodalStiffness without_borne();
+  NodalStiffness stiffness_without_fibres();
   void bear_held_nodes();
   void add_fibre_inertia(double rise);
   void add_contact(NodalStiffness& stiffness);
@@ -124,8 +125,8 @@ class Model {
   std::vector<double> bearing_mass_;  ///< what bears stiffness: a tied node's is its share of its pad [kg]
   std::vector<double> mobility_, turning_mobility_;  ///< 1 / bearing mass and inertia; 0 where held [padded]
   std::vector<double> own_mass_, gyration2_;         ///< of all nodes, held ones too [kg], [m^2]
-  double selective_rate_ = 0;  ///< highest of a node that does not touch, with selective scaling [1/s]
-  double stable_dt_ = 0, selective_dt_ = 0, alpha_ = 0;
+  double fibre_inertia_rate_ = 0;  ///< highest of a node that does not touch, with fibre inertia [1/s]
+  double stable_dt_ = 0, fibre_inertia_dt_ = 0, alpha_ = 0;
   double servo_dt_ = std::numeric_limits<double>::infinity();
 };
 

@@ -380,8 +380,8 @@ double GripperRig::kinetic_energy(const State& state, size_t g) const {
                  body.inertia_of(pad) * pad.angular_velocity.squaredNorm();
   for (auto k = size_t(body.first); pad.released && k < size_t(body.last); ++k) {
     const auto n = size_t(tied_[k]);
-    twice +=
-        nodes_[k].mass * get(state.velocity, n).squaredNorm() + nodes_[k].inertia * get(state.director_rate, n).squaredNorm();
+    twice += nodes_[k].mass * get(state.velocity, n).squaredNorm() +
+             nodes_[k].inertia * get(state.director_rate, n).squaredNorm();
   }
   return 0.5 * twice;
 }

@@ -69,7 +69,7 @@ class GripperRig {
 
   [[nodiscard]] RigScratch scratch() const;
 
-  /// Pads whose suction has ended let go of their nodes; before the step's forces, since mass added to fibres
+  /// Pads whose suction has ended let go of their nodes; before the step's forces, since fibre inertia
   /// must not pull at a light node as at a pad. Books the difference of kinetic energy.
   void let_go(State& state, const RigDrive& drive) const;
 

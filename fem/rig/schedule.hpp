@@ -1,4 +1,4 @@
-// What each gripper is told to do: where its joint goes over time, and when its suction ends.
+// What each gripper is to do: where its joint goes over time, and when its suction ends.
 #pragma once
 
 #include <Eigen/Core>

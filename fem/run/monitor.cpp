@@ -53,13 +53,14 @@ Monitor::Monitor(const Model& model) : model_(model) {
   if (!model.scene().mold) return;
   const State& flat = half_;
   for (size_t n = 0; n < size_t(model.node_count()); ++n)
-    overhang_ = std::max(overhang_, beyond(model.scene().mold->extent(), flat.position.x[n], flat.position.y[n]));
+    overhang_ =
+        std::max(overhang_, beyond(model.scene().mold->extent(), flat.position.x[n], flat.position.y[n]));
 }
 
 Energies energies(const Model& model, const State& state) {
   const auto work = [&state](Book book) { return state.work[size_t(book)]; };
   Energies e;
-  e.kinetic = kinetic_energy(model, state) - work(Book::added_mass);
+  e.kinetic = kinetic_energy(model, state) - work(Book::fibre_inertia);
   e.internal = -work(Book::internal);
   e.external = work(Book::gravity) + work(Book::actuator) + work(Book::load) + work(Book::grip);
   e.friction = -work(Book::friction);
@@ -82,10 +83,10 @@ bool Monitor::holds_more(const State& state, double limit) {
       place.z[n] -= 0.5 * state.dt_before * rate.z[n];
     }
   };
-  back(half_.x, state.velocity);
+  back(half_.position, state.velocity);
   back(half_.director, state.director_rate);
   const ShellEnergy stored = model_.shell().stored_energy(half_);
-  const double rounding = 0.5 * model_.shell().borne_stretch() * area_ * kRoundStrain * kRoundStrain;
+  const double rounding = 0.5 * model_.shell().fibre_inertia_stretch() * area_ * kRoundStrain * kRoundStrain;
   return stored.fabric + stored.hourglass > limit + rounding;
 }
 
@@ -115,13 +116,13 @@ bool Monitor::look(State& state, RunSummary& summary) {
   if (std::min(now.contact, now.friction) < -kGivenShare * largest)
     return fail(state, "contact gives energy that it never took: the step is unstable; lower step_safety",
                 summary);
-  if (state.work[size_t(Book::added_mass)] > kGivenShare * largest)
-    return fail(state, "mass added to fibres gives energy that it never took: lower selective_scaling",
-                summary);
+  if (state.work[size_t(Book::fibre_inertia)] > kGivenShare * largest)
+    return fail(state, "fibre inertia gives energy that it never took: lower fibre_mass_scaling", summary);
   record.balance = std::max(record.balance, std::abs(balance));
   for (size_t n = 0; n < size_t(model_.node_count()); ++n) {
-    if (std::isfinite(state.position.x[n]) && std::isfinite(state.position.y[n]) && std::isfinite(state.position.z[n]) &&
-        std::isfinite(state.velocity.x[n]) && std::isfinite(state.velocity.y[n]) && std::isfinite(state.velocity.z[n])) {
+    if (std::isfinite(state.position.x[n]) && std::isfinite(state.position.y[n]) &&
+        std::isfinite(state.position.z[n]) && std::isfinite(state.velocity.x[n]) &&
+        std::isfinite(state.velocity.y[n]) && std::isfinite(state.velocity.z[n])) {
       continue;
     }
     return fail(state, "not finite at node " + std::to_string(n), summary);
@@ -167,9 +168,11 @@ void Monitor::note_penetration(State& state) {
     for (int k = 0; k < chunk; ++k) {
       const auto n = size_t(first + k);
       const double above = (state.position.z[n] - z[k]) / std::sqrt(1 + zx[k] * zx[k] + zy[k] * zy[k]);
-      if (surface - above > 0) slid_ = std::max(slid_, beyond(mold.extent(), state.position.x[n], state.position.y[n]));
+      if (surface - above > 0)
+        slid_ = std::max(slid_, beyond(mold.extent(), state.position.x[n], state.position.y[n]));
       if (!(surface - above > state.record.penetration)) continue;  // not defined here, or no worse
-      const double distance = mold.closest({state.position.x[n], state.position.y[n], state.position.z[n]}).signed_distance;
+      const double distance =
+          mold.closest({state.position.x[n], state.position.y[n], state.position.z[n]}).signed_distance;
       state.record.penetration = std::max(state.record.penetration, surface - distance);
     }
   }

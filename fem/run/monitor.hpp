@@ -11,8 +11,8 @@ class Monitor {
  public:
   explicit Monitor(const Model& model);
 
-  /// Looks at a state and notes the worst in its record. Returns false, with the reason in the summary, if the
-  /// run cannot go on.
+  /// Looks at a state and notes the worst in its record. Returns false, with the reason in the summary, if
+  /// the run cannot go on.
   bool look(State& state, RunSummary& summary);
 
   /// Kinetic and hourglass energy against internal energy, into the state's record.

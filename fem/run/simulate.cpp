@@ -156,7 +156,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   if (summary.message.empty() && !std::isfinite(state.time)) {
     summary.status = RunStatus::diverged;
     summary.message = "the stable step is not finite: the steps before were unstable; after step " +
-                     std::to_string(state.step);
+                      std::to_string(state.step);
   }
   if (!work.rig.converged && summary.status == RunStatus::done) {
     summary.status = RunStatus::diverged;
@@ -176,7 +176,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   summary.state_hash = hash_state(state, model.node_count());
   summary.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
   summary.element_updates_per_second = double(state.step - first_step) * model.scene().mesh.element_count() /
-                                      std::max(summary.wall_seconds, 1e-9);
+                                       std::max(summary.wall_seconds, 1e-9);
   return result;
 }
 

@@ -71,7 +71,8 @@ class Tangent {
       Eigen::Vector3d turn = step * turn_weight(n) * u.segment<3>(6 * n + 3);
       turn -= turn.dot(d) * d;
       trial_.position.x[k] += move.x(), trial_.position.y[k] += move.y(), trial_.position.z[k] += move.z();
-      trial_.velocity.x[k] += rate_ * move.x(), trial_.velocity.y[k] += rate_ * move.y(), trial_.velocity.z[k] += rate_ * move.z();
+      trial_.velocity.x[k] += rate_ * move.x(), trial_.velocity.y[k] += rate_ * move.y(),
+          trial_.velocity.z[k] += rate_ * move.z();
       trial_.director.x[k] += turn.x(), trial_.director.y[k] += turn.y(), trial_.director.z[k] += turn.z();
     }
     compute_forces(model_, trial_, work_);
@@ -81,7 +82,7 @@ class Tangent {
       for (double& place : *part) place *= 1 + kOffTheKink;
     }
     trial_.history = state_.history;  // as it was before the forces
-    model_.shell().let_strains_grow(trial_, kOffTheKink + kGrowth);
+    model_.shell().set_lagged_strains(trial_, kOffTheKink + kGrowth);
     model_.terms().front()->forces(trial_, work_.entries.data());
     if (model_.fibre_inertia()) add_inertia(model_, trial_, work_);
     Modes out = Modes::Zero(size());
@@ -154,11 +155,11 @@ double stable_step(const Model& model, State& state, StepScratch& scratch) {
     }
     model.bear_released(state, sum);
     const double rate = model.highest_rate(sum);
-    model.lighten(sum, rate, state.lightness);
+    model.update_lightness(sum, rate, state.lightness);
     if (round > 1) continue;
     const double step = model.stable_dt(rate);
     // Mass on edges was made for the steepest fibre that the law has.
-    return model.fibre_inertia() ? std::min(step, model.selective_dt() / std::sqrt(steepest)) : step;
+    return model.fibre_inertia() ? std::min(step, model.fibre_inertia_dt() / std::sqrt(steepest)) : step;
   }
 }
 

@@ -21,7 +21,8 @@ template <class StateType, class Visit>
 void visit_state(StateType& s, const Visit& visit) {
   visit(s.step);
   for (auto* value : {&s.time, &s.dt, &s.dt_before, &s.stable_dt}) visit(*value);
-  for (auto* field : {&s.position, &s.velocity, &s.director, &s.director_rate, &s.anchor, &s.edges[0], &s.edges[1]}) {
+  for (auto* field :
+       {&s.position, &s.velocity, &s.director, &s.director_rate, &s.anchor, &s.edges[0], &s.edges[1]}) {
     for (auto* part : {&field->x, &field->y, &field->z}) visit(*part);
   }
   visit(s.stuck);

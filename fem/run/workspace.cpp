@@ -57,7 +57,8 @@ void kick(const Model& model, State& state, Workspace& work) {
         work.moment.set_lanes(n, moment);
       }
     }
-    const Vec3<Lanes> v = state.velocity.lanes(n), w = state.director_rate.lanes(n), d = state.director.lanes(n);
+    const Vec3<Lanes> v = state.velocity.lanes(n), w = state.director_rate.lanes(n),
+                      d = state.director.lanes(n);
     const Lanes mobility = load(&model.inverse_mass()[n]), turning = load(&model.inverse_inertia()[n]);
     moment = moment - dot(moment, d) * d;  // a director cannot be stretched
     const auto kicked = [&](const Vec3<Lanes>& before, const Lanes& by_force, const Vec3<Lanes>& sum) {
@@ -177,7 +178,7 @@ void book_work(const Model& model, State& state, const Workspace& work) {
   for (size_t k = 0; k < work.entries.size(); ++k) power[k] += stdx::reduce(on_guided[k]);
   const double added_power = work.added_power + stdx::reduce(added);
   for (size_t k = 0; k < work.entries.size(); ++k) state.work[size_t(work.entries[k].book)] += h * power[k];
-  state.work[size_t(Book::added_mass)] += h * added_power;
+  state.work[size_t(Book::fibre_inertia)] += h * added_power;
   state.work[size_t(Book::damping)] -= h * work.damping;
 }
 

@@ -30,7 +30,7 @@ struct Workspace {
   VectorField mean_v, mean_w;                ///< means of the half-step velocities of guided nodes, if any
   std::vector<size_t> guided;                ///< first nodes of lanes where the mean velocities are not zero
   std::vector<char> has_tied;                ///< by lanes of nodes: some belong to a pad; empty without pads
-  /// Of all entries, and of added mass; where has_tied, or everywhere with selective scaling.
+  /// Of all entries, and of added mass; where has_tied, or everywhere with fibre inertia.
   VectorField force, moment;
   double added_power = 0;  ///< of added mass on free nodes [W]
   FibreInertiaScratch inertia;
@@ -41,7 +41,7 @@ struct Workspace {
 /// Forces of all terms at the state's positions.
 void compute_forces(const Model& model, State& state, Workspace& work);
 
-/// The last part of compute_forces: their sums, with what mass added to fibres makes of them.
+/// The last part of compute_forces: their sums, with what fibre inertia makes of them.
 void add_inertia(const Model& model, const State& state, Workspace& work);
 
 /// Velocities of free nodes from the half step before t to the one after it, and their means.

@@ -43,14 +43,14 @@ inline SectionStiffness<double> steepest_section(double thickness, double fibre,
   return {both, both, thickness * shear, 1};
 }
 
-/// What is left of a fibre when mass on edges bears (1 + kBorneMargin) times its steepest stretch. The margin
-/// bears what couples stretch to curvature, C: with S the stretch borne, the quadratic form of strain e and
-/// curvature k, margin S e^2 + 2 C e k + C^2 / (margin S) k^2, is a square.
-/// @param off  share of the stretch that is not along the edges.  @param borne  with the margin [N/m].
-inline constexpr double kBorneMargin = 0.1;
+/// What is left of a fibre when mass on edges bears (1 + kFibreInertiaMargin) times its steepest stretch. The
+/// margin bears what couples stretch to curvature, C: with S the stretch carried, the quadratic form of
+/// strain e and curvature k, margin S e^2 + 2 C e k + C^2 / (margin S) k^2, is a square.
+/// @param off  share of the stretch that is not along the edges.  @param carried  with the margin [N/m].
+inline constexpr double kFibreInertiaMargin = 0.1;
 template <class V>
-FibreStiffness<V> unborne(const FibreStiffness<V>& fibre, const V& off, const V& borne) {
-  const V margin = V(kBorneMargin / (1 + kBorneMargin)) * borne, stretch = off * borne;
+FibreStiffness<V> without_fibre_inertia(const FibreStiffness<V>& fibre, const V& off, const V& carried) {
+  const V margin = V(kFibreInertiaMargin / (1 + kFibreInertiaMargin)) * carried, stretch = off * carried;
   return {stretch, stretch, V(0.0), V(0.0), fibre.bend + fibre.couple * fibre.couple / margin};
 }
 

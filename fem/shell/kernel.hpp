@@ -1,8 +1,8 @@
 // One-point director shell with fabric law: forces of one lane-block of elements.
 //
-// Source: [Krogh], "Transient Nonlinear FE Model" (reduced integration, first-order shear deformation, nominal
-// stress over nominal strain along the fibres, decoupled modes, bending through section points). Differs:
-// total-Lagrangian with unit directors d instead of rotations, so rigid motion is exact.
+// Source: [Krogh], "Transient Nonlinear FE Model" (reduced integration, first-order shear deformation,
+// nominal stress over nominal strain along the fibres, decoupled modes, bending through section points).
+// Differs: total-Lagrangian with unit directors d instead of rotations, so rigid motion is exact.
 //
 // At the element's middle, with X the flat rest place and h = (1, -1, 1, -1) over the corners:
 //   a_k = x,k    c_k = d,k    dm = mean d    fibre vectors at height s of the section: f_k = a_k + s c_k

@@ -22,18 +22,19 @@ class Shell : public Term {
  public:
   /// Like add_stiffness, with the steepest slopes of the slowest curves.
   virtual void add_slow_stiffness(NodalStiffness& stiffness) const = 0;
-  /// Like add_stiffness, without what selective scaling lets added mass bear.
-  virtual void add_unborne_stiffness(NodalStiffness& stiffness) const = 0;
+  /// Like add_stiffness, without what fibre inertia carries.
+  virtual void add_stiffness_without_fibres(NodalStiffness& stiffness) const = 0;
   /// Of the fibres that it lets added mass bear, by the slowest curves.
-  virtual void add_borne_stiffness(NodalStiffness& stiffness) const = 0;
+  virtual void add_fibre_stiffness(NodalStiffness& stiffness) const = 0;
   /// By element: whether mass on its edges can bear its fibres.
-  [[nodiscard]] virtual std::vector<char> borne() const = 0;
+  [[nodiscard]] virtual std::vector<char> with_fibre_inertia() const = 0;
   /// Tells at which step [s] mass on edges bears the steepest fibres: bulk viscosity damps them as well.
-  virtual void set_borne_step(double stable_dt) = 0;
+  virtual void set_fibre_inertia_step(double stable_dt) = 0;
   /// What that mass must bear: force per width and strain [N/m].
-  [[nodiscard]] virtual double borne_stretch() const = 0;
+  [[nodiscard]] virtual double fibre_inertia_stretch() const = 0;
   /// The section's tangents at a state, for add_bounds: section_count() numbers.
-  /// @return the steepest force per width and strain of a fibre that added mass bears, over borne_stretch().
+  /// @return the steepest force per width and strain of a fibre that added mass bears, over
+  /// fibre_inertia_stretch().
   virtual double look_at_sections(const State& state, std::vector<double>& sections) const = 0;
   [[nodiscard]] virtual size_t section_count() const = 0;
   /// Adds bounds of all elements with these sections, times each node's lightness.
@@ -42,7 +43,7 @@ class Shell : public Term {
                           NodalStiffness& stiffness) const = 0;
   /// Moves the remembered strains by so much (beyond zero where they are smaller) that every fibre in
   /// compression and every angle counts as growing: the stiffer side where a law tells growth from decline.
-  virtual void let_strains_grow(State& state, double by) const = 0;
+  virtual void set_lagged_strains(State& state, double by) const = 0;
   /// With rates: that of the slowest curves; the rest is taken, not stored.
   [[nodiscard]] virtual ShellEnergy stored_energy(const State& state) const = 0;
   /// Fills the element fields of a snapshot: shear angle and fibre strains at mid-thickness.

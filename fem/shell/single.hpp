@@ -70,14 +70,15 @@ class SingleShellTerm final : public ShellTerm<N, A, kRates> {
     const Rows<const double> x(state.position), d(state.director);
     const Rows<double> force(entries->force), moment(entries->moment);
     const double per_step2 = 1 / (state.stable_dt * state.stable_dt);  // see ShellTerm
-    const double viscous = 4 * this->viscous_mass_ * per_step2, borne = 4 * this->viscous_borne_ * per_step2;
+    const double viscous = 4 * this->viscous_mass_ * per_step2,
+                 carried = 4 * this->viscous_fibre_inertia_ * per_step2;
     const double follow = kRates ? -std::expm1(-state.dt * this->lag_rate_) : 0;
     for (const Pair& pair : pairs_) {
       const ElementGeometry<SingleLanes>& g = joint_geometries_[pair.geometry];
       const std::array<const Block*, 2> block{&this->blocks_[pair.block[0]], &this->blocks_[pair.block[1]]};
       auto&& law = law_of(state, pair, follow);
       const SingleLanes added =
-          joined(Lanes(block[0]->rectangle ? borne : 0.0), Lanes(block[1]->rectangle ? borne : 0.0));
+          joined(Lanes(block[0]->rectangle ? carried : 0.0), Lanes(block[1]->rectangle ? carried : 0.0));
       FibreViscosity<SingleLanes, A> viscosity{{SingleLanes(viscous) * g.half1 * g.half1 + added,
                                                 SingleLanes(viscous) * g.half2 * g.half2 + added},
                                                {}};

@@ -6,8 +6,9 @@
 namespace drapeplan {
 namespace {
 
-constexpr double kShearCorrection = 5.0 / 6;  // Reissner's factor for a homogeneous section; [Krogh], Eq. (14)
-constexpr double kTabulatedStrain = 0.02;     // at least; beyond the table the last piece goes on
+constexpr double kShearCorrection =
+    5.0 / 6;                               // Reissner's factor for a homogeneous section; [Krogh], Eq. (14)
+constexpr double kTabulatedStrain = 0.02;  // at least; beyond the table the last piece goes on
 constexpr double kFibreStep = 4e-5;  // strain per piece: the power law of tension is met to 1e-5 of its end
 constexpr double kTabulatedSine = 0.98;  // 78.5 degrees; tau / cos g goes on linearly from there
 constexpr int kShearIntervals = 490;

@@ -91,7 +91,7 @@ class ShellTerm : public Shell {
         shear_slope_(slow_shear_slope_),
         viscous_mass_(options.bulk_viscosity * options.mass_scaling * fabric.areal_density /
                       (SectionRule<N>::weight[N / 2] * fabric.thickness)),
-        selective_(options.selective_scaling > 1),
+        fibre_inertia_(options.fibre_mass_scaling > 1),
         bulk_viscosity_(options.bulk_viscosity) {
     if constexpr (kRates) {
       tables_ = rate_tables(fabric);
@@ -119,26 +119,28 @@ class ShellTerm : public Shell {
         steepest_section(material_.thickness, material_.fibre.largest_slope(), slow_shear_slope_);
     add_steepest(all, all, stiffness);
   }
-  void add_unborne_stiffness(NodalStiffness& stiffness) const override {
+  void add_stiffness_without_fibres(NodalStiffness& stiffness) const override {
     const auto all = steepest_section(material_.thickness, fibre_slope_, shear_slope_);
     auto left = all;
-    left.fibre1 = left.fibre2 = unborne(all.fibre1, 0.0, borne_stretch());
+    left.fibre1 = left.fibre2 = without_fibre_inertia(all.fibre1, 0.0, fibre_inertia_stretch());
     add_steepest(left, all, stiffness);
   }
-  void add_borne_stiffness(NodalStiffness& stiffness) const override {
+  void add_fibre_stiffness(NodalStiffness& stiffness) const override {
     add_steepest(steepest_section(material_.thickness, material_.fibre.largest_slope(), 0),
                  steepest_section(material_.thickness, 0, 0), stiffness);
   }
-  [[nodiscard]] std::vector<char> borne() const override {
+  [[nodiscard]] std::vector<char> with_fibre_inertia() const override {
     std::vector<char> list;
     for (const Block& block : blocks_) list.insert(list.end(), size_t(block.used), block.rectangle);
     return list;
   }
-  void set_borne_step(double stable_dt) override {
-    viscous_borne_ =
-        bulk_viscosity_ * borne_fibre() * stable_dt * stable_dt / (4 * SectionRule<N>::weight[N / 2]);
+  void set_fibre_inertia_step(double stable_dt) override {
+    viscous_fibre_inertia_ =
+        bulk_viscosity_ * fibre_inertia_slope() * stable_dt * stable_dt / (4 * SectionRule<N>::weight[N / 2]);
   }
-  [[nodiscard]] double borne_stretch() const override { return borne_fibre() * material_.thickness; }
+  [[nodiscard]] double fibre_inertia_stretch() const override {
+    return fibre_inertia_slope() * material_.thickness;
+  }
 
   DRAPEPLAN_FLATTEN double look_at_sections(const State& state,
                                             std::vector<double>& sections) const override {
@@ -150,18 +152,18 @@ class ShellTerm : public Shell {
       const ElementGeometry<Lanes>& g = geometries_[block.geometry];
       const Corners<Lanes> place = x.corners(block), along = d.corners(block);
       auto section = section_tangent<N, A>(g, material_, slopes_of(state, b), place, along);
-      if (selective_ && block.rectangle) {
+      if (fibre_inertia_ && block.rectangle) {
         Lanes here = std::experimental::max(section.fibre1.steepest(), section.fibre2.steepest());
         clear_idle(block, here);
         steepest = std::experimental::max(steepest, here);
-        leave_unborne(g, motion_products(element_motion(g, place, along)), section);
+        leave_without_fibre_inertia(g, motion_products(element_motion(g, place, along)), section);
       }
       for (const Lanes* part : section.parts()) {
         store(*part, at);
         at += kLanes;
       }
     }
-    return (1 + kBorneMargin) * std::experimental::hmax(steepest) / borne_stretch();
+    return (1 + kFibreInertiaMargin) * std::experimental::hmax(steepest) / fibre_inertia_stretch();
   }
 
   [[nodiscard]] size_t section_count() const override {
@@ -216,7 +218,8 @@ class ShellTerm : public Shell {
       const ElementGeometry<Lanes>& g = geometries_[block.geometry];
       auto law = law_of(state, b, follow);
       double* before = &state.history[b * size_t(kLanes)];
-      const Lanes added(block.rectangle ? 4 * viscous_borne_ / (state.stable_dt * state.stable_dt) : 0.0);
+      const Lanes added(block.rectangle ? 4 * viscous_fibre_inertia_ / (state.stable_dt * state.stable_dt)
+                                        : 0.0);
       FibreViscosity<Lanes, A> viscosity{
           {Lanes(viscous) * g.half1 * g.half1 + added, Lanes(viscous) * g.half2 * g.half2 + added}, {}};
       for (size_t k = 0; k < kStrainSlots; ++k) viscosity.strain[k] = load(before + k * stride);
@@ -257,7 +260,7 @@ class ShellTerm : public Shell {
     }
   }
 
-  void let_strains_grow(State& state, double by) const override {
+  void set_lagged_strains(State& state, double by) const override {
     if constexpr (kRates) {
       for (size_t slot = 0; slot < kLawSlots; ++slot) {
         const bool angle = slot < 3 * size_t(N) && slot % 3 == 2;
@@ -318,24 +321,24 @@ class ShellTerm : public Shell {
   }
 
   /// Modulus that mass on edges bears, with a margin for what couples stretch to curvature [Pa].
-  [[nodiscard]] double borne_fibre() const { return (1 + kBorneMargin) * fibre_slope_; }
+  [[nodiscard]] double fibre_inertia_slope() const { return (1 + kFibreInertiaMargin) * fibre_slope_; }
 
   /// Takes away what mass on edges bears. It acts along the edges; fibres in between are at a small angle,
   /// and the square of its sine is left.
-  void leave_unborne(const ElementGeometry<Lanes>& g, const MotionProducts<Lanes>& m,
-                     SectionStiffness<Lanes>& section) const {
+  void leave_without_fibre_inertia(const ElementGeometry<Lanes>& g, const MotionProducts<Lanes>& m,
+                                   SectionStiffness<Lanes>& section) const {
     const Lanes off1 = g.across1 * g.across1 * (m.hh - m.a1h * m.a1h / m.a11) / m.a11;
     const Lanes off2 = g.across2 * g.across2 * (m.hh - m.a2h * m.a2h / m.a22) / m.a22;
-    section.fibre1 = unborne(section.fibre1, off1, Lanes(borne_stretch()));
-    section.fibre2 = unborne(section.fibre2, off2, Lanes(borne_stretch()));
+    section.fibre1 = without_fibre_inertia(section.fibre1, off1, Lanes(fibre_inertia_stretch()));
+    section.fibre2 = without_fibre_inertia(section.fibre2, off2, Lanes(fibre_inertia_stretch()));
   }
 
   /// In the rest shape, with one section for elements whose fibres added mass may bear and one for others.
-  void add_steepest(const SectionStiffness<double>& borne, const SectionStiffness<double>& others,
+  void add_steepest(const SectionStiffness<double>& of_fibre_inertia, const SectionStiffness<double>& others,
                     NodalStiffness& stiffness) const {
-    const std::vector<char> can_be_borne = this->borne();
+    const std::vector<char> with_fibre_inertia = this->with_fibre_inertia();
     for (size_t e = 0; e < mesh_.quads.size(); ++e) {
-      const auto& section = can_be_borne[e] ? borne : others;
+      const auto& section = with_fibre_inertia[e] ? of_fibre_inertia : others;
       const auto& quad = mesh_.quads[e];
       CornerShares<double> shares{{1, 1, 1, 1}, {0, 0, 0, 0}};
       for (size_t c = 0; c < 4; ++c) shares.twin[c] = quad[c] == quad[(c + 1) % 4] ? 1 : 0;
@@ -381,10 +384,11 @@ class ShellTerm : public Shell {
   double fibre_slope_, slow_shear_slope_, shear_slope_;  ///< steepest, instantaneous ones with rates [Pa]
   double
       viscous_mass_;  ///< damping ratio times scaled mass per area, over the middle point's weight [kg/m^3]
-  bool selective_;
+  bool fibre_inertia_;
   double bulk_viscosity_;
-  double viscous_borne_ = 0;  ///< the same of mass on edges, per volume and squared element length [Pa s^2]
-  double lag_rate_ = 0;       ///< of lagged strains, in the simulation's time [1/s]
+  double viscous_fibre_inertia_ =
+      0;                 ///< the same of mass on edges, per volume and squared element length [Pa s^2]
+  double lag_rate_ = 0;  ///< of lagged strains, in the simulation's time [1/s]
   std::conditional_t<kRates, RateTables, NoTables> tables_;
   std::vector<ElementGeometry<double>> geometry_;
   std::vector<Block> blocks_;

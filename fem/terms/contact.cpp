@@ -199,7 +199,8 @@ class ContactTerm final : public Term {
 
   void press(State& state, Forces* entries, size_t at, const Feet& feet, size_t k) const {
     const Lanes zero(0.0), one(1.0);
-    const Vec3<Lanes> x = state.position.lanes(at), foot{load(&feet.x[k]), load(&feet.y[k]), load(&feet.z[k])};
+    const Vec3<Lanes> x = state.position.lanes(at),
+                      foot{load(&feet.x[k]), load(&feet.y[k]), load(&feet.z[k])};
     const Lanes zx = load(&feet.zx[k]), zy = load(&feet.zy[k]);
     const Lanes rise = one / stdx::sqrt(one + zx * zx + zy * zy);
     Vec3<Lanes> normal{-(zx * rise), -(zy * rise), rise};

@@ -26,12 +26,12 @@ struct ReleasedSprings {
 };
 
 /// Node-to-mold contact: springs with dashpots. The gap is the distance to the tangent plane at the foot of
-/// the perpendicular (one step of Newton's method, 1e-11 m and 1e-6 rad on the article's mold); the force acts
-/// along the normal there, and presses only: max(0, -stiffness gap - damping v_n). With a coefficient also
-/// anchored Coulomb friction: a node is held by an equal spring and dashpot at its anchor; where they would
-/// exceed coefficient times normal force, the anchor is dragged. A node that touches anew drops its anchor
-/// where its path crossed the surface, so that friction acts at once: it sticks if it came in steeper than
-/// the friction angle. Exact stick, no creep; path dependent.
+/// the perpendicular (one step of Newton's method, 1e-11 m and 1e-6 rad on the article's mold); the force
+/// acts along the normal there, and presses only: max(0, -stiffness gap - damping v_n). With a coefficient
+/// also anchored Coulomb friction: a node is held by an equal spring and dashpot at its anchor; where they
+/// would exceed coefficient times normal force, the anchor is dragged. A node that touches anew drops its
+/// anchor where its path crossed the surface, so that friction acts at once: it sticks if it came in steeper
+/// than the friction angle. Exact stick, no creep; path dependent.
 /// @param surface  distance of the touching face from the nodes [m] (half the ply).
 /// @param released  for nodes of pads; empty without a rig.
 /// @param look_ahead  steps for which a tangent must hold: it counts nodes that may touch in as many.

@@ -31,12 +31,12 @@ void FibreInertia::Row::store_to(std::vector<double>& values, const Lanes& value
   for (size_t l = 0; l < size_t(kLanes); ++l) values[size_t(nodes[l])] = value[l];
 }
 
-FibreInertia::FibreInertia(const Mesh& mesh, const std::vector<char>& borne, double stretch, double rate,
-                           std::vector<double> mobility, std::vector<std::vector<int>> tied)
+FibreInertia::FibreInertia(const Mesh& mesh, const std::vector<char>& with_fibre_inertia, double stretch,
+                           double rate, std::vector<double> mobility, std::vector<std::vector<int>> tied)
     : count_(mesh.node_count()),
       mobility_(std::move(mobility)),
       tied_(std::move(tied)),
-      lines_{lines_of(mesh, borne, 0), lines_of(mesh, borne, 1)} {
+      lines_{lines_of(mesh, with_fibre_inertia, 0), lines_of(mesh, with_fibre_inertia, 1)} {
   for (Lines& lines : lines_) {
     for (double& mass : lines.mass) mass *= stretch / (rate * rate);
   }
@@ -44,14 +44,15 @@ FibreInertia::FibreInertia(const Mesh& mesh, const std::vector<char>& borne, dou
 
 /// Masses per stretch / rate^2: with the fibre stretched differently at both edges, an element of length a
 /// and width b is not stiffer than a spring b / (2 a) at each.
-FibreInertia::Lines FibreInertia::lines_of(const Mesh& mesh, const std::vector<char>& borne, int along) {
+FibreInertia::Lines FibreInertia::lines_of(const Mesh& mesh, const std::vector<char>& with_fibre_inertia,
+                                           int along) {
   const int count = mesh.node_count();
   Lines lines;
   lines.mass.assign(padded(count), 0.0);
   lines.ahead.assign(padded(count), count);
   std::vector<int> behind = lines.ahead;
   for (size_t e = 0; e < mesh.quads.size(); ++e) {
-    if (!borne[e]) continue;
+    if (!with_fibre_inertia[e]) continue;
     const auto& quad = mesh.quads[e];
     const Eigen::Vector2d size =
         (mesh.rest[size_t(quad[2])] - mesh.rest[size_t(quad[0])]).cwiseAbs();  // of a rectangle
@@ -126,7 +127,8 @@ void FibreInertia::aim(State& state) const {
     const Lines& lines = lines_[fibre];
     VectorField& n = state.edges[fibre];
     for (size_t k = 0; k < size_t(count_); k += size_t(kLanes)) {
-      const Vec3<Lanes> edge = lines.ends[k / size_t(kLanes)].load_from(state.position) - state.position.lanes(k);
+      const Vec3<Lanes> edge =
+          lines.ends[k / size_t(kLanes)].load_from(state.position) - state.position.lanes(k);
       Lanes length, inverse;
       root_and_inverse(dot(edge, edge), length, inverse);
       std::experimental::where(load(&lines.mass[k]) == Lanes(0.0), inverse) = Lanes(0.0);

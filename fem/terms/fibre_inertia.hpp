@@ -1,4 +1,4 @@
-// Selective mass scaling: mass that is added to the stretch of fibres alone, which alone sets the step.
+// Fibre inertia: inertia of the stretch of fibres alone, which alone sets the step.
 //
 // Every edge of a rectangle along a fibre gets a mass mu that resists the relative acceleration of its two
 // nodes along it, n.(a_2 - a_1), and nothing else: falling, sliding, turning, bending and shearing stay as
@@ -12,7 +12,7 @@
 // warp, so that the mass matrix is symmetric; without the second pass it is not, and drapes blow up within a
 // few thousand steps.
 //
-// Source of the idea: selective mass scaling by a stiffness-proportional part of the mass matrix (Olovsson,
+// Source of the idea: fibre inertia by a stiffness-proportional part of the mass matrix (Olovsson,
 // Simonsson, Unosson 2005); by lines and along fibres only: own.
 #pragma once
 
@@ -39,13 +39,13 @@ struct FibreInertiaScratch {
 
 class FibreInertia {
  public:
-  /// @param borne     by element: its edges get mass; rectangles along the fibres only
+  /// @param with_fibre_inertia     by element: its edges get mass; rectangles along the fibres only
   /// @param stretch   steepest force per width and strain of a fibre [N/m]
   /// @param rate      highest rate that the stretch of an edge may have [1/s]
   /// @param mobility  1 / mass of nodes that are on their own, 0 where they are held [1/kg, padded]
   /// @param tied      nodes of each pad: while it holds them, an edge there pulls as if the pad did not
   ///                  accelerate, which is not quite symmetric: see fem/README.md for what that limits
-  FibreInertia(const Mesh& mesh, const std::vector<char>& borne, double stretch, double rate,
+  FibreInertia(const Mesh& mesh, const std::vector<char>& with_fibre_inertia, double stretch, double rate,
                std::vector<double> mobility, std::vector<std::vector<int>> tied);
 
   [[nodiscard]] FibreInertiaScratch scratch() const;
@@ -77,7 +77,7 @@ class FibreInertia {
     std::vector<size_t> groups;     ///< first row of each group of lines, and the end
   };
 
-  static Lines lines_of(const Mesh& mesh, const std::vector<char>& borne, int along);
+  static Lines lines_of(const Mesh& mesh, const std::vector<char>& with_fibre_inertia, int along);
   static void order_sweeps(const std::vector<int>& behind, Lines& lines);
   void factor(const State& state, FibreInertiaScratch& scratch) const;
   static void factor(const Lines& lines, double share, const VectorField& n,

@@ -36,7 +36,8 @@ class LoadsTerm final : public Term {
     }
     for (const NodalLoad& load : moments_) {
       const auto n = size_t(load.node);
-      const Eigen::Vector3d m = load.value.cross(Eigen::Vector3d(state.director.x[n], state.director.y[n], state.director.z[n]));
+      const Eigen::Vector3d m =
+          load.value.cross(Eigen::Vector3d(state.director.x[n], state.director.y[n], state.director.z[n]));
       moment.x[n] += m.x();
       moment.y[n] += m.y();
       moment.z[n] += m.z();

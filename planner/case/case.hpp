@@ -74,7 +74,7 @@ struct Probe {
 /// A published result, shown beside the own ones.
 struct Reference {
   std::string name;
-  double max_gap = 0;       ///< [m]
+  double max_gap = 0;              ///< [m]
   double max_boundary_offset = 0;  ///< [m]
 };
 

@@ -129,8 +129,7 @@ void visit_score(FieldVisitor& v, ScoreOptions& s) {
            "A gap above it counts as wrinkled where the ply does not "
            "bridge a hollow",
            Dimension::length, positive()});
-  v.field({"target_gap", &s.target_gap, "Reference of the gaps", Dimension::length,
-           positive()});
+  v.field({"target_gap", &s.target_gap, "Reference of the gaps", Dimension::length, positive()});
   v.field({"target_boundary_offset", &s.target_boundary_offset, "Reference of the boundary offsets",
            Dimension::length, positive()});
   v.field({"locking_angle",
@@ -141,10 +140,8 @@ void visit_score(FieldVisitor& v, ScoreOptions& s) {
   v.field(
       {"strain_limit", &s.strain_limit, "Fibre strain above it is penalised", Dimension::none, positive(1)});
   v.section({"weights", "Of the parts of the objective; 0 leaves a part out", false, {}, true}, true, [&] {
-    v.field(
-        {"max_gap", &s.weight_max_gap, "Of the largest gap", Dimension::none, from(0)});
-    v.field(
-        {"rms_gap", &s.weight_rms_gap, "Of the r.m.s. gap", Dimension::none, from(0)});
+    v.field({"max_gap", &s.weight_max_gap, "Of the largest gap", Dimension::none, from(0)});
+    v.field({"rms_gap", &s.weight_rms_gap, "Of the r.m.s. gap", Dimension::none, from(0)});
     v.field({"wrinkled_area", &s.weight_wrinkled_area, "Of the wrinkled area, per 1 % of the ply",
              Dimension::none, from(0)});
     v.field({"max_boundary_offset", &s.weight_max_boundary_offset, "Of the largest boundary offset",
@@ -183,7 +180,7 @@ void visit_fem(FieldVisitor& v, FemOptions& f) {
            "Of the shell's forces; positions, sums of forces, contact and books are in double"});
   v.field({"mass_scaling", &f.mass_scaling, "Factor on the mass; gravity acts on the unscaled mass",
            Dimension::none, from(1, 1e6)});
-  v.field({"selective_scaling", &f.selective_scaling,
+  v.field({"fibre_mass_scaling", &f.fibre_mass_scaling,
            "The step may be this many times longer: mass is added to the stretch of fibres alone; 1: none",
            Dimension::none, from(1, 8)});
   v.field({"target_step", &f.target_step, "Mass is added to nodes where the step would be smaller; 0: none",
@@ -274,8 +271,7 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
   ObjectList references = object_list(
       "references", "Published results that are shown beside the own ones", c.references, [&v](Reference& r) {
         v.field({"name", &r.name, "Name in tables", Dimension::none, {}, true});
-        v.field(
-            {"max_gap", &r.max_gap, "Largest gap", Dimension::length, from(0), true});
+        v.field({"max_gap", &r.max_gap, "Largest gap", Dimension::length, from(0), true});
         v.field({"max_boundary_offset", &r.max_boundary_offset, "Largest boundary offset", Dimension::length,
                  from(0), true});
       });

@@ -6,7 +6,7 @@ namespace drapeplan {
 /// Each part is divided by its reference value and multiplied by its weight; a weight of 0 leaves it out.
 struct ScoreOptions {
   double wrinkle_threshold = 0.001;       ///< [m]
-  double target_gap = 0.001;       ///< reference of gaps [m]
+  double target_gap = 0.001;              ///< reference of gaps [m]
   double target_boundary_offset = 0.002;  ///< reference of boundary offsets [m]
   double locking_angle_deg = 35;          ///< shear above it is penalised [deg]
   double strain_limit = 0.02;             ///< fibre strain above it is penalised [-]

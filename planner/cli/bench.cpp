@@ -39,7 +39,7 @@ struct BenchScene {
   double mesh_size = 0.005;
   int section_points = 3;
   bool rates = false;
-  double selective_scaling = 1;
+  double fibre_mass_scaling = 1;
   Precision precision = Precision::double_lanes;
 };
 
@@ -53,7 +53,7 @@ std::vector<BenchScene> bench_scenes() {
           {"drape-5mm-5-points", Kind::drape, 0.005, 5},
           {"drape-5mm-rates", Kind::drape, 0.005, 3, true},
           {"drape-5mm-5-points-rates", Kind::drape, 0.005, 5, true},
-          {"drape-5mm-selective", Kind::drape, 0.005, 3, false, 4},
+          {"drape-5mm-fibre-inertia", Kind::drape, 0.005, 3, false, 4},
           {"drape-5mm-single", Kind::drape, 0.005, 3, false, 1, Precision::single_lanes}};
 }
 
@@ -77,7 +77,7 @@ Scene scene_of(const Case& value, const BenchScene& bench) {
   options.mesh_size = bench.mesh_size;
   options.section_points = bench.section_points;
   options.rates = bench.rates;
-  options.selective_scaling = bench.selective_scaling;
+  options.fibre_mass_scaling = bench.fibre_mass_scaling;
   options.precision = bench.precision;
   Scene scene = scene_of(value, options);
   if (bench.kind != Kind::drape) {

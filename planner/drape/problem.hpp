@@ -32,8 +32,8 @@ ReachProblem reach_problem_of(const Case& value, const std::vector<Eigen::Vector
 struct Drape {
   RunResult run;
   Score score;
-  std::vector<double> gap;  ///< per node [m]
-  std::vector<Snapshot> frames;    ///< equally spaced in time, as many as were asked for
+  std::vector<double> gap;       ///< per node [m]
+  std::vector<Snapshot> frames;  ///< equally spaced in time, as many as were asked for
 };
 
 /// A part of a run: from a saved state, and up to a pause [s, schedule's clock]; see RunRequest.

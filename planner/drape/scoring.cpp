@@ -181,7 +181,7 @@ std::optional<std::string> not_finite(const Snapshot& end, const RunExtremes& ru
 
 /// Gap parts of the score; false where the mold is not defined below a node (`node` says which).
 bool score_gap(const Mesh& mesh, const Snapshot& end, const Mold& mold, double thickness,
-                      const ScoreOptions& options, Score& score, size_t& node) {
+               const ScoreOptions& options, Score& score, size_t& node) {
   const std::vector<double> gaps = gaps(end, mold, thickness);
   const std::vector<double> areas = nodal_areas(mesh);
   const std::vector<bool> bridges = bridging(mesh, end, mold);
@@ -263,8 +263,8 @@ Score score_drape(const Mesh& mesh, const Snapshot& end, const Mold& mold,
   score.duration = run.duration;
   const std::vector<double> areas = nodal_areas(mesh);
   score.objective = objective(score, options, std::accumulate(areas.begin(), areas.end(), 0.0));
-  const double parts = score.max_gap + score.rms_gap + score.max_boundary_offset +
-                       score.rms_boundary_offset + score.objective;
+  const double parts =
+      score.max_gap + score.rms_gap + score.max_boundary_offset + score.rms_boundary_offset + score.objective;
   if (!std::isfinite(parts)) return failed_score("the ply is too far away: its score is not finite");
   score.valid = true;
   return score;

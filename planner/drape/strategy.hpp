@@ -1,8 +1,8 @@
 // Draping strategies: who goes down when. All are pure functions from a few numbers to a schedule.
 //
-// A sequence has two parts ([Krogh], "Motion Planning"): the preshape, a straight line of constant velocity to
-// the same height above every target, and then one stroke per gripper down to its target. A strategy is only
-// the choice of the strokes; `to_schedule` does the rest.
+// A sequence has two parts ([Krogh], "Motion Planning"): the preshape, a straight line of constant velocity
+// to the same height above every target, and then one stroke per gripper down to its target. A strategy is
+// only the choice of the strokes; `to_schedule` does the rest.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
-// What one field of an input file is: its name, target, meaning, unit, range and default; and the interface of
-// all that visits fields: reader, writer and schema.
+// What one field of an input file is: its name, target, meaning, unit, range and default; and the interface
+// of all that visits fields: reader, writer and schema.
 #pragma once
 
 #include <Eigen/Core>

@@ -63,8 +63,8 @@ void check(const std::vector<DrapePanel>& panels) {
     if (panel.position.size() == nodes && panel.gap.size() == nodes) continue;
     throw std::invalid_argument("drape_picture: panel \"" + panel.title + "\" has " +
                                 std::to_string(panel.position.size()) + " positions and " +
-                                std::to_string(panel.gap.size()) + " gaps for " +
-                                std::to_string(nodes) + " nodes");
+                                std::to_string(panel.gap.size()) + " gaps for " + std::to_string(nodes) +
+                                " nodes");
   }
 }
 
@@ -190,9 +190,9 @@ std::string millimetres(double metres) {
 std::vector<std::string> draw_marks(Svg& svg, const DrapePanel& panel, const View& view) {
   std::vector<std::string> lines;
   std::vector<Vector2d> taken;
-  const auto largest =
-      std::max_element(panel.gap.begin(), panel.gap.end(),
-                       [](double a, double b) { return finite_or_zero(a) < finite_or_zero(b); });
+  const auto largest = std::max_element(panel.gap.begin(), panel.gap.end(), [](double a, double b) {
+    return finite_or_zero(a) < finite_or_zero(b);
+  });
   if (panel.largest_offset) {
     const auto& [edge, boundary] = *panel.largest_offset;
     draw_measure(svg, view.pixel(edge), view.pixel(boundary));

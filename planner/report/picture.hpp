@@ -18,7 +18,7 @@ struct DrapePanel {
   std::string subtitle;  ///< a second, smaller line; may be empty
   Mesh mesh;
   std::vector<Eigen::Vector3d> position;  ///< nodes [m]
-  std::vector<double> gap;         ///< nodes [m], see `gaps`
+  std::vector<double> gap;                ///< nodes [m], see `gaps`
   std::vector<Eigen::Vector3d> boundary;  ///< prescribed, closed [m]; may be empty
   std::vector<Eigen::Vector3d> pads;      ///< centres [m]; may be empty
   double pad_radius = 0;                  ///< [m]

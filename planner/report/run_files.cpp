@@ -185,8 +185,7 @@ std::string comparison_table(const DrapeProblem& problem, const PlanResult& resu
       text += "  " + s.reason + "\n";
       continue;
     }
-    for (const double part :
-         {s.max_gap, s.rms_gap, s.max_boundary_offset, s.rms_boundary_offset}) {
+    for (const double part : {s.max_gap, s.rms_gap, s.max_boundary_offset, s.rms_boundary_offset}) {
       text += " " + cell(1e3 * part, "%*.2f", 10);
     }
     text += " " + cell(1e4 * s.wrinkled_area, "%*.1f", 10) + " " + cell(s.objective, "%*.2f", 9) + "\n";

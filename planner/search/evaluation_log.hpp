@@ -42,8 +42,8 @@ std::uint64_t schedule_hash(const Schedule& schedule);
 
 /// Append-only file of JSON lines. The first names the format and the case; each other one is an evaluation,
 /// flushed when written. Thread-safe. Resume = open the same file again: known (schedule, fidelity) pairs are
-/// then served from it. Of a run's summary only what the planner shows is kept (status, steps, times, energies,
-/// hash).
+/// then served from it. Of a run's summary only what the planner shows is kept (status, steps, times,
+/// energies, hash).
 class EvaluationLog {
  public:
   /// In memory only.

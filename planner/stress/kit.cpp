@@ -254,12 +254,12 @@ double apart_from(const StressRun& run, const FemOptions& options) {
   return std::sqrt(sum / double(a.size()));
 }
 
-StressCheck borne(const StressRun& run, double share) {
+StressCheck weight_carried(const StressRun& run, double share) {
   constexpr double kOfActuators = 1e-3;
   const double weight = weight_of(run.setup.scene);
   double actuators = 0;
   for (const double force : run.result.final.actuator_force) actuators += std::abs(force);
-  return at_most("weight not borne [N]", std::abs(support_over_weight(run) - 1) * weight,
+  return at_most("weight not carried [N]", std::abs(support_over_weight(run) - 1) * weight,
                  share * weight + kOfActuators * actuators);
 }
 
@@ -270,7 +270,7 @@ StressScene drape_scene(std::string group, std::string name, std::function<void(
                       change(setup);
                       return setup;
                     },
-                    [](const StressRun& run) { return std::vector{borne(run)}; }};
+                    [](const StressRun& run) { return std::vector{weight_carried(run)}; }};
   scene.most_drift = 1e-4;
   return scene;
 }

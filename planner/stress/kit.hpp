@@ -65,7 +65,7 @@ Schedule lay_down(const Scene& scene, double depth = 0, double speed = 1);
 double support_over_weight(const StressRun& run);
 /// At rest contact and actuators bear the ply: what is missing is at most a share of its weight, and of the
 /// forces with which actuators strain against each other.
-StressCheck borne(const StressRun& run, double share = 0.02);
+StressCheck weight_carried(const StressRun& run, double share = 0.02);
 /// A scene of corner_drape() with a change, judged by it.
 StressScene drape_scene(std::string group, std::string name, std::function<void(StressSetup&)> change);
 /// Of the ply's weight [N].

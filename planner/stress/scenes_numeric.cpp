@@ -25,8 +25,8 @@ void add_mass(Scenes& scenes) {
   }
   for (const double scaling : {2.0, 4.0, 8.0}) {
     StripSetup strip;
-    strip.options.selective_scaling = scaling;
-    scenes.push_back(strip_scene("mass scaling", "selective x " + number_text(scaling) + ": sag", strip));
+    strip.options.fibre_mass_scaling = scaling;
+    scenes.push_back(strip_scene("mass scaling", "fibre mass x " + number_text(scaling) + ": sag", strip));
   }
   for (const double scaling : {1.0, 1e3, 1e5}) {
     scenes.push_back(drape_scene("mass scaling", "x " + number_text(scaling) + ": drape",
@@ -39,20 +39,20 @@ void add_mass(Scenes& scenes) {
       FemOptions light = run.setup.scene.options;
       light.mass_scaling = 4;
       const double ratio = run.result.summary.largest_kinetic_ratio;
-      const std::string told = ratio > 1 ? "told by a kinetic ratio of " + number_text(ratio) + "; " : "";
+      const std::string words = ratio > 1 ? "told by a kinetic ratio of " + number_text(ratio) + "; " : "";
       return std::vector{
-          at_most(told + "apart from mass x 4 [m]", apart_from(run, light), ratio > 1 ? 0.01 : 1e-3)};
+          at_most(words + "apart from mass x 4 [m]", apart_from(run, light), ratio > 1 ? 0.01 : 1e-3)};
     };
     if (scaling < 1e5) continue;
     scenes.back().otherwise = Verdict::stopped;
     scenes.back().says = "inside the mold";  // pads that heavy nodes follow too late push them in
   }
   for (const double scaling : {2.0, 4.0, 8.0}) {
-    scenes.push_back(drape_scene("mass scaling",
-                                 "selective x " + number_text(scaling) + ": drape held by interlinks",
-                                 [scaling](StressSetup& s) { s.scene.options.selective_scaling = scaling; }));
+    scenes.push_back(
+        drape_scene("mass scaling", "fibre mass x " + number_text(scaling) + ": drape held by interlinks",
+                    [scaling](StressSetup& s) { s.scene.options.fibre_mass_scaling = scaling; }));
     scenes.back().otherwise = Verdict::stopped;
-    scenes.back().says = "lower selective_scaling";
+    scenes.back().says = "lower fibre_mass_scaling";
   }
   StripSetup target;
   target.options.target_step = 1e-3;

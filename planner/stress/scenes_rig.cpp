@@ -40,7 +40,7 @@ StressSetup small_rig(const std::vector<std::string>& overrides) {
 
 void add_cases(Scenes& scenes) {
   scenes.push_back({"gripper speed", "a case", [] { return small_rig({}); },
-                    [](const StressRun& run) { return std::vector{borne(run)}; }});
+                    [](const StressRun& run) { return std::vector{weight_carried(run)}; }});
   scenes.back().most_drift = 1e-4;
   const auto refuse = [&scenes](std::string group, std::string name, std::string setting, std::string place) {
     scenes.push_back({std::move(group), std::move(name), [setting] { return small_rig({setting}); }, nullptr,
@@ -59,7 +59,7 @@ void add_cases(Scenes& scenes) {
          return small_rig({"schedule.preshape_duration=\"1 ms\"", "schedule.uniform.duration=\"1 ms\""});
        },
        [](const StressRun& run) {
-         std::vector<StressCheck> checks{borne(run)};
+         std::vector<StressCheck> checks{weight_carried(run)};
          checks.push_back(at_most("speed [m/s]", run.setup.schedule->largest_velocity(), 0.2001));
          return checks;
        }});
@@ -75,7 +75,7 @@ void add_speeds(Scenes& scenes) {
   }
   // Back up before it touches, at once: the ply hangs from the pads again.
   const auto up = [](const StressRun& run) {
-    std::vector<StressCheck> checks{borne(run)};
+    std::vector<StressCheck> checks{weight_carried(run)};
     checks.push_back(at_most("joints off their command [m]", off_command(run), 1e-4));
     return checks;
   };
@@ -149,7 +149,7 @@ void add_links(Scenes& scenes) {
     const RigOptions& rig = *run.setup.scene.rig;
     const double rate = 2 / run.result.summary.dt;
     const double missing = std::abs(support_over_weight(run) - 1) * weight_of(run.setup.scene);
-    return std::vector{at_most("weight not borne, in chatter [N]", missing,
+    return std::vector{at_most("weight not carried, in chatter [N]", missing,
                                rig.count() * rig.pad_mass * rate * rate * kAmplitude)};
   };
   scenes.push_back(drape_scene("interlinks", "joints 200 mm above pads of 20 mm", [](StressSetup& s) {
@@ -199,7 +199,7 @@ void add_releases(Scenes& scenes) {
     scenes.push_back(
         drape_scene("release", name, [t = time](StressSetup& s) { s.schedule->release.assign(4, t); }));
     // Without pads the ply goes on to slide, slowly against mass damping, which bears some of it.
-    scenes.back().judge = [](const StressRun& run) { return std::vector{borne(run, 0.1)}; };
+    scenes.back().judge = [](const StressRun& run) { return std::vector{weight_carried(run, 0.1)}; };
     scenes.back().most_drift = 2e-3;
   }
   // Contact springs sized for a pad once stayed on its light nodes: the end then hung on the step.
@@ -209,7 +209,7 @@ void add_releases(Scenes& scenes) {
                                  s.schedule->release[3] = 6.0;
                                }));
   scenes.back().judge = [](const StressRun& run) {
-    return std::vector{borne(run), at_most("apart [m]", apart_from(run, safer(run)), 5e-4)};
+    return std::vector{weight_carried(run), at_most("apart [m]", apart_from(run, safer(run)), 5e-4)};
   };
   scenes.back().most_drift = 1e-3;
 }

@@ -53,7 +53,8 @@ std::vector<StressCheck> common_checks(const StressScene& scene, const StressRun
                              (stored.fabric + stored.hourglass - e.internal) / largest, scene.most_given));
   }
   if (run.setup.scene.mold)
-    checks.push_back(at_most("penetration over thickness", summary.largest_penetration / fabric.thickness, 1));
+    checks.push_back(
+        at_most("penetration over thickness", summary.largest_penetration / fabric.thickness, 1));
   if (run.setup.scene.rig)
     checks.push_back(at_most("error of interlinks [m]", summary.largest_link_error, kLinkError));
   double size = 0;
@@ -116,18 +117,18 @@ void accept(const StressScene& scene, Verdict verdict, const std::string& reason
 
 void judge_run(const StressScene& scene, const StressRun& run, StressOutcome& outcome) {
   outcome.checks = common_checks(scene, run);
-  std::string told;
+  std::string words;
   if (scene.judge) {
     for (StressCheck& check : scene.judge(run)) {
-      told += (told.empty() ? "" : "; ") + check.text();
+      words += (words.empty() ? "" : "; ") + check.text();
       outcome.checks.push_back(std::move(check));
     }
   }
   for (const std::string& warning : run.setup.warnings)
-    told += (told.empty() ? "" : "; ") + ("warned: " + warning);
+    words += (words.empty() ? "" : "; ") + ("warned: " + warning);
   const std::string failed = failed_checks(outcome.checks);
   outcome.verdict = failed.empty() ? Verdict::right : Verdict::wrong;
-  outcome.reason = failed.empty() ? told : failed;
+  outcome.reason = failed.empty() ? words : failed;
 }
 
 void play(const StressScene& scene, StressOutcome& outcome) {

@@ -32,7 +32,7 @@ struct StressCheck {
 StressCheck near(std::string what, double value, double expected, double share);
 StressCheck at_most(std::string what, double value, double most);
 
-/// What a scene plays. A word of warning that the user would read counts as told.
+/// What a scene plays. A word of warning that the user would read counts as one.
 struct StressSetup {
   Scene scene;
   std::optional<Schedule> schedule;  ///< with a rig
@@ -73,7 +73,7 @@ struct StressOutcome {
   Verdict verdict = Verdict::wrong;
   std::string reason = {};  ///< of what is not right; else what was measured
   std::vector<StressCheck> checks = {};
-  std::optional<RunSummary> summary = {};                       ///< if there was a run
+  std::optional<RunSummary> summary = {};                     ///< if there was a run
   std::optional<double> drift = {};                           ///< [m]
   std::optional<double> estimated_step = {}, true_step = {};  ///< at the end [s]
   std::optional<double> limit_over_estimate = {};             ///< by bisection of runs

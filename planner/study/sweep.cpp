@@ -32,7 +32,7 @@ std::vector<Knob> knobs(const Case& base) {
       {"section points", "fem.section_points", {"5", "3", "1"}},
       {"precision", "fem.precision", {"double", "single"}},
       {"fibre points", "fem.fibre_points", {"2", "1"}},
-      {"selective mass scaling", "fem.selective_scaling", {"1", "2", "3", "4", "6", "8"}}};
+      {"fibre inertia", "fem.fibre_mass_scaling", {"1", "2", "3", "4", "6", "8"}}};
   if (is_driven(base)) list.push_back({"time scaling", "fem.time_scaling", {"1", "2", "4", "8", "16", "32"}});
   list.push_back({"fibre stiffness", "material.tension.factor", {"1", "0.5", "0.2", "0.05", "0.01"}});
   if (base.material.shear.curves.size() > 1 || base.material.compression.curves.size() > 1)
@@ -63,7 +63,7 @@ std::vector<StudyPoint> sweep_points(const StudySubject& subject) {
     points.push_back({"fidelity " + name, subject.changes_of(name), {}, {}, {}});
   const double mesh = subject.base().fidelities.at(kReport).mesh_size;
   struct Cheap {
-    const char *mass, *time, *selective;
+    const char *mass, *time, *fibre_mass;
     bool single = false;
   };
   for (const double factor : {1.0, 1.5, 2.0}) {
@@ -76,7 +76,7 @@ std::vector<StudyPoint> sweep_points(const StudySubject& subject) {
                               {"20", "8", "4", true}}) {
       Settings settings{{"fem.mesh_size", rounded_length(factor * mesh)},
                         {"fem.mass_scaling", cheap.mass},
-                        {"fem.selective_scaling", cheap.selective}};
+                        {"fem.fibre_mass_scaling", cheap.fibre_mass}};
       if (is_driven(subject.base())) settings["fem.time_scaling"] = cheap.time;
       if (cheap.single) settings["fem.precision"] = "single";
       const auto same = [&settings](const StudyPoint& point) { return point.settings == settings; };

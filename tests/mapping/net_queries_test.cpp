@@ -28,8 +28,9 @@ TEST(MappedPoint, AgreesBetweenCoarseAndFineNets) {
   const Net coarse = article_net(Generators::axes, 0.01), fine = article_net(Generators::axes, 0.005);
   for (double u = -0.2; u < 0.2025; u += 0.0137) {
     for (double v = -0.2; v < 0.2025; v += 0.0137) {
-      EXPECT_LE((mapped_point(coarse, article_mold(), {u, v}) - mapped_point(fine, article_mold(), {u, v})).norm(),
-                5e-5);
+      EXPECT_LE(
+          (mapped_point(coarse, article_mold(), {u, v}) - mapped_point(fine, article_mold(), {u, v})).norm(),
+          5e-5);
     }
   }
 }

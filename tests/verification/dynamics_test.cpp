@@ -64,7 +64,8 @@ TEST(Bar, CarriesAFrontWithTheStressOfItsEndVelocity) {
   EXPECT_LE(test::figure("front of a wave [m]", front * kLength / kElements, kSpeed * state.time), 0.01);
   // Mean over the stretch behind the front, where the grid rings.
   const int behind = kElements / 2;
-  const double strain = (state.position.x[size_t(behind)] - state.position.x[0]) / (behind * kLength / kElements) - 1;
+  const double strain =
+      (state.position.x[size_t(behind)] - state.position.x[0]) / (behind * kLength / kElements) - 1;
   const double density = kBar.density / kBar.thickness;
   EXPECT_LE(test::figure("stress behind it [Pa]", kBar.modulus * strain, density * kSpeed * velocity), 0.01);
 }

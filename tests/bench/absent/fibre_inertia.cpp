@@ -6,12 +6,12 @@
 namespace drapeplan {
 namespace {
 
-constexpr const char* kInertia = "mass on fibres";
+constexpr const char* kInertia = "fibre inertia";
 
 }  // namespace
 
-FibreInertia::FibreInertia(const Mesh& /*mesh*/, const std::vector<char>& /*borne*/, double /*stretch*/,
-                           double /*rate*/, std::vector<double> /*mobility*/,
+FibreInertia::FibreInertia(const Mesh& /*mesh*/, const std::vector<char>& /*with_fibre_inertia*/,
+                           double /*stretch*/, double /*rate*/, std::vector<double> /*mobility*/,
                            std::vector<std::vector<int>> /*tied*/)
     : count_(0) {
   absent(kInertia);

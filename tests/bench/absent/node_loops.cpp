@@ -20,7 +20,8 @@ void kick_nodes(const Model& model, State& state, Workspace& work) {
   Lanes power(0.0);
   for (size_t n = 0; n < size_t(model.node_count()); n += size_t(kLanes)) {
     const Vec3<Lanes> force = work.entries[0].force.lanes(n), all = work.entries[0].moment.lanes(n);
-    const Vec3<Lanes> v = state.velocity.lanes(n), w = state.director_rate.lanes(n), d = state.director.lanes(n);
+    const Vec3<Lanes> v = state.velocity.lanes(n), w = state.director_rate.lanes(n),
+                      d = state.director.lanes(n);
     const Lanes mobility = load(&model.inverse_mass()[n]), turning = load(&model.inverse_inertia()[n]);
     const Vec3<Lanes> moment = all - dot(all, d) * d;
     const Vec3<Lanes> v_new = v + (h * mobility) * force, w_new = w + (h * turning) * moment;
@@ -39,7 +40,7 @@ void book_work(const Model& /*model*/, State& state, const Workspace& work) {
 }
 
 void add_inertia(const Model& /*model*/, const State& /*state*/, Workspace& /*work*/) {
-  absent("mass on fibres");
+  absent("fibre inertia");
 }
 
 void kick_pads(const Model& /*model*/, State& /*state*/, const RigDrive& /*drive*/, Workspace& /*work*/) {

@@ -73,10 +73,10 @@ inline void expect_derivative_of_energy(const TermSubject& subject) {
   double force_error = 0, moment_error = 0;
   for (size_t n = 0; n < exact.force.size(); ++n) {
     for (int k = 0; k < 3; ++k) {
-      force_error =
-          std::max(force_error, std::abs(exact.force[n][k] - difference(state.position, n, k, subject.length_step)));
-      moment_error = std::max(moment_error,
-                              std::abs(exact.moment[n][k] - difference(state.director, n, k, subject.angle_step)));
+      force_error = std::max(
+          force_error, std::abs(exact.force[n][k] - difference(state.position, n, k, subject.length_step)));
+      moment_error = std::max(
+          moment_error, std::abs(exact.moment[n][k] - difference(state.director, n, k, subject.angle_step)));
     }
   }
   EXPECT_LE(force_error, subject.tolerance * force);
@@ -90,7 +90,8 @@ inline void expect_no_resultant(const TermSubject& subject) {
   double size = 0;
   for (size_t n = 0; n < f.force.size(); ++n) {
     force += f.force[n];
-    moment += get(subject.state.position, n).cross(f.force[n]) + get(subject.state.director, n).cross(f.moment[n]);
+    moment +=
+        get(subject.state.position, n).cross(f.force[n]) + get(subject.state.director, n).cross(f.moment[n]);
     size += f.force[n].norm();
   }
   EXPECT_GT(size, 0);

@@ -108,7 +108,8 @@ class Element {
     state_.dt = dt;
     for (size_t n = 0; n < 4; ++n) {
       const Eigen::Vector2d X = model_.scene().mesh.rest[n];
-      test::put(state_.position, n, {(1 + strain) * X.x() + std::sin(angle) * X.y(), std::cos(angle) * X.y(), 0});
+      test::put(state_.position, n,
+                {(1 + strain) * X.x() + std::sin(angle) * X.y(), std::cos(angle) * X.y(), 0});
     }
     compute_forces(model_, state_, work_);
   }

@@ -75,7 +75,8 @@ Eigen::Vector2d rotations(const PadState& pad) {
   return {std::atan2(-n.y(), n.z()), std::atan2(n.x(), n.z())};
 }
 
-// The article's Figure 7: connectors with a least and a largest rotation. Full actuator force at the pad's rim.
+// The article's Figure 7: connectors with a least and a largest rotation. Full actuator force at the pad's
+// rim.
 TEST(GripperRig, HoldsItsTiltLimitAgainstTheFullForceAtTheRimWithinATenthOfADegree) {
   for (const double azimuth : {0.0, 2.0, -1.0}) {
     Bench bench = one_gripper();

@@ -70,7 +70,8 @@ inline void disturb(State& state, int nodes, double size, double angle, unsigned
 /// Turns the whole state about the origin.
 inline void rotate(State& state, int nodes, const Eigen::Matrix3d& by) {
   for (size_t n = 0; n < size_t(nodes); ++n) {
-    for (VectorField* field : {&state.position, &state.velocity, &state.director, &state.director_rate}) put(*field, n, by * get(*field, n));
+    for (VectorField* field : {&state.position, &state.velocity, &state.director, &state.director_rate})
+      put(*field, n, by * get(*field, n));
   }
 }
 

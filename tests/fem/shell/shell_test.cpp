@@ -65,7 +65,8 @@ TEST_P(ShellTerms, PassTheTermKit) {
 TEST_P(ShellTerms, PassThePatchTest) {
   for (size_t n = 0; n < nodes; ++n) {
     const Eigen::Vector3d x = get(state.position, n);
-    put(state.position, n, {x.x() + 1e-3 * (x.x() + 0.5 * x.y()), x.y() + 1e-3 * (x.y() + 0.5 * x.x()), x.z()});
+    put(state.position, n,
+        {x.x() + 1e-3 * (x.x() + 0.5 * x.y()), x.y() + 1e-3 * (x.y() + 0.5 * x.x()), x.z()});
   }
   compute();
   double inner = 0, edge = 0;

@@ -131,7 +131,9 @@ struct Incline {
     }
     work.emplace(*model);
   }
-  [[nodiscard]] Eigen::Vector3d middle() const { return test::get(state.position, size_t(model->node_count() / 2)); }
+  [[nodiscard]] Eigen::Vector3d middle() const {
+    return test::get(state.position, size_t(model->node_count() / 2));
+  }
   /// Distance moved by the sheet's middle in `time`.
   double slide(double time) {
     const Eigen::Vector3d start = middle();
@@ -266,7 +268,8 @@ TEST(Start, OnTheMoldTouchesItFlatInItsTangentPlane) {
   EXPECT_LE((foot.foot.head<2>() - scene.position).norm(), 1e-12);
   for (size_t n = 0; n < 9; ++n) {
     EXPECT_LE((test::get(state.director, n) - foot.normal).norm(), 1e-12);
-    EXPECT_LE(std::abs((test::get(state.position, n) - test::get(state.position, 4)).dot(foot.normal)), 1e-15);
+    EXPECT_LE(std::abs((test::get(state.position, n) - test::get(state.position, 4)).dot(foot.normal)),
+              1e-15);
   }
   scene.mold.reset();
   EXPECT_THROW(Model{scene}, std::invalid_argument);

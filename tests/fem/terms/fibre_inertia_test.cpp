@@ -30,12 +30,13 @@ constexpr double kRoundOff = 1e-13;
 /// A ply whose nodes have masses of their own, and mass on its fibres.
 struct Ply {
   Mesh mesh;
-  std::vector<char> borne;
+  std::vector<char> with_fibre_inertia;
   std::vector<double> mass = std::vector<double>(size_t(mesh.node_count()));  ///< 0: held [kg]
   std::vector<std::vector<int>> tied{};
   State state{};
 
-  Ply(Mesh from, std::vector<char> elements) : mesh(std::move(from)), borne(std::move(elements)) {
+  Ply(Mesh from, std::vector<char> elements)
+      : mesh(std::move(from)), with_fibre_inertia(std::move(elements)) {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> unit(0.5, 1.5);
     for (double& m : mass) m = kNodeMass * unit(random);
@@ -54,7 +55,7 @@ struct Ply {
   [[nodiscard]] FibreInertia inertia() const {
     std::vector<double> mobility(padded(mesh.node_count()), 0.0);
     for (size_t n = 0; n < mass.size(); ++n) mobility[n] = mass[n] > 0 ? 1 / mass[n] : 0;
-    return {mesh, borne, kStretch, kRate, std::move(mobility), tied};
+    return {mesh, with_fibre_inertia, kStretch, kRate, std::move(mobility), tied};
   }
   /// 1 / mass of every component; 0 where a node is held, by a pad too.
   [[nodiscard]] VectorXd mobility() const {
@@ -102,7 +103,7 @@ struct Edges {
 Edges edges_of(const Ply& ply, int along) {
   std::map<std::pair<int, int>, double> masses;
   for (size_t e = 0; e < ply.mesh.quads.size(); ++e) {
-    if (!ply.borne[e]) continue;
+    if (!ply.with_fibre_inertia[e]) continue;
     const auto& quad = ply.mesh.quads[e];
     double length[2] = {0, 0};
     for (size_t c = 0; c < 2; ++c) {
@@ -120,7 +121,8 @@ Edges edges_of(const Ply& ply, int along) {
   Eigen::Index row = 0;
   for (const auto& [nodes, mass] : masses) {
     const Eigen::Vector3d n =
-        (get(ply.state.position, size_t(nodes.second)) - get(ply.state.position, size_t(nodes.first))).normalized();
+        (get(ply.state.position, size_t(nodes.second)) - get(ply.state.position, size_t(nodes.first)))
+            .normalized();
     edges.rows.row(row).segment<3>(3 * nodes.first) = -n;
     edges.rows.row(row).segment<3>(3 * nodes.second) = n;
     edges.mass[row++] = mass;
@@ -156,8 +158,8 @@ std::vector<char> all_of(const Mesh& mesh) {
 /// More than eight lines along the weft: they do not all go side by side.
 Ply rectangle() {
   Mesh mesh = rectangle_mesh(0.11, 0.04, 0.01);
-  std::vector<char> borne = all_of(mesh);
-  return Ply(std::move(mesh), std::move(borne)).crumple(0.002);
+  std::vector<char> with_fibre_inertia = all_of(mesh);
+  return Ply(std::move(mesh), std::move(with_fibre_inertia)).crumple(0.002);
 }
 
 /// An L with an oblique edge: lines of different lengths, some in two pieces; triangles and moved nodes at
@@ -165,14 +167,15 @@ Ply rectangle() {
 Ply outline() {
   const Polygon shape{{-0.1, -0.07}, {0.1, -0.07}, {0.1, -0.02}, {0.02, 0.01}, {0.02, 0.07}, {-0.1, 0.07}};
   Mesh mesh = outline_mesh(shape, 0.01);
-  std::vector<char> borne = make_shell(mesh, test::woven_fabric(), {})->borne();
-  return Ply(std::move(mesh), std::move(borne)).crumple(0.001);
+  std::vector<char> with_fibre_inertia = make_shell(mesh, test::woven_fabric(), {})->with_fibre_inertia();
+  return Ply(std::move(mesh), std::move(with_fibre_inertia)).crumple(0.001);
 }
 
 /// Leaves out elements: holes cut lines into pieces.
 Ply perforated() {
   Ply ply = rectangle();
-  for (size_t e = 0; e < ply.borne.size(); ++e) ply.borne[e] = e % 5 != 1 && e % 7 != 2;
+  for (size_t e = 0; e < ply.with_fibre_inertia.size(); ++e)
+    ply.with_fibre_inertia[e] = e % 5 != 1 && e % 7 != 2;
   return ply;
 }
 
@@ -279,26 +282,26 @@ TEST(FibreInertia, IsASymmetricPositiveDefiniteMassAboveThatOfTheNodes) {
 TEST(FibreInertia, IsBorneByRectanglesAlongTheFibresOnly) {
   const Ply ply = outline();
   size_t others = 0;
-  for (size_t e = 0; e < ply.borne.size(); ++e) {
-    if (!ply.borne[e]) ++others;
+  for (size_t e = 0; e < ply.with_fibre_inertia.size(); ++e) {
+    if (!ply.with_fibre_inertia[e]) ++others;
     const auto& quad = ply.mesh.quads[e];
-    for (size_t c = 0; c < 4 && ply.borne[e]; ++c) {
+    for (size_t c = 0; c < 4 && ply.with_fibre_inertia[e]; ++c) {
       const Eigen::Vector2d side = ply.mesh.rest[size_t(quad[(c + 1) % 4])] - ply.mesh.rest[size_t(quad[c])];
       EXPECT_LE(side.cwiseAbs().minCoeff(), 1e-9 * side.norm()) << e;
       EXPECT_GT(side.norm(), 0) << e;
     }
   }
   EXPECT_GE(others, 5U);
-  EXPECT_GE(ply.borne.size() - others, 30U);
+  EXPECT_GE(ply.with_fibre_inertia.size() - others, 30U);
 }
 
 /// 3x3 grippers with interlinks over the middle of the article's mold, the middle one fixed, with friction.
 /// Masses and time are scaled as in the shipped cases.
-Scene drape(double selective) {
+Scene drape(double fibre_mass) {
   Scene scene = test::middle_drape(0.205, 0.017);
   scene.options.mass_scaling = 20;
   scene.options.time_scaling = 4;
-  scene.options.selective_scaling = selective;
+  scene.options.fibre_mass_scaling = fibre_mass;
   return scene;
 }
 Schedule drop(const Scene& scene) {
@@ -313,7 +316,7 @@ Schedule drop_and_release(const Scene& scene) {
   return schedule;
 }
 
-TEST(SelectiveScaling, GoesOnWithTheSameBitsThroughAFile) {
+TEST(FibreInertia, GoesOnWithTheSameBitsThroughAFile) {
   const Scene scene = drape(4);
   const Schedule schedule = drop_and_release(scene);
   const RunResult whole = simulate(Model(scene), {.schedule = &schedule});
@@ -341,7 +344,7 @@ TEST(SelectiveScaling, GoesOnWithTheSameBitsThroughAFile) {
   EXPECT_EQ(whole.state.work, parts.state.work);
 }
 
-TEST(SelectiveScaling, KeepsItsBooksAndAddsNextToNoWork) {
+TEST(FibreInertia, KeepsItsBooksAndAddsNextToNoWork) {
   const Scene scene = drape(4);
   const Schedule schedule = drop(scene);
   const Model model(scene);
@@ -349,14 +352,14 @@ TEST(SelectiveScaling, KeepsItsBooksAndAddsNextToNoWork) {
   double largest = 0;
   RunResult run = simulate(model, {.schedule = &schedule, .pause = first});
   for (double pause = first + between; run.summary.status == RunStatus::paused; pause += between) {
-    largest = std::max(largest, std::abs(run.state.work[size_t(Book::added_mass)]));
+    largest = std::max(largest, std::abs(run.state.work[size_t(Book::fibre_inertia)]));
     const State from = run.state;
     run = simulate(model, {.schedule = &schedule, .from = &from, .pause = pause});
   }
   ASSERT_EQ(run.summary.status, RunStatus::done) << run.summary.message;
   std::printf("balance %.1e; work of added mass %.1e of the largest energy, at the end %.1e\n",
               run.summary.energy.balance_error, largest / run.state.record.energy,
-              run.state.work[size_t(Book::added_mass)] / run.state.record.energy);
+              run.state.work[size_t(Book::fibre_inertia)] / run.state.record.energy);
   EXPECT_LE(run.summary.energy.balance_error, 1e-8);
   EXPECT_GT(largest, 0);
   EXPECT_LE(largest, 0.01 * run.state.record.energy);
@@ -364,20 +367,20 @@ TEST(SelectiveScaling, KeepsItsBooksAndAddsNextToNoWork) {
 
 // Light nodes that a pad has let go must not feel edges as the pad did: with the filter of the pad for one
 // step, that step alone gave a tenth of all energy.
-TEST(SelectiveScaling, GivesNoEnergyWhenAPadLetsGo) {
+TEST(FibreInertia, GivesNoEnergyWhenAPadLetsGo) {
   const Scene scene = drape(4);
   const Schedule schedule = drop_and_release(scene);
   const RunResult run = simulate(Model(scene), {.schedule = &schedule, .pause = kRelease + 0.1});
   ASSERT_EQ(run.summary.status, RunStatus::paused) << run.summary.message;
   ASSERT_TRUE(run.state.pads.back().released);
-  const double added = run.state.work[size_t(Book::added_mass)] / run.state.record.energy;
+  const double added = run.state.work[size_t(Book::fibre_inertia)] / run.state.record.energy;
   std::printf("work of added mass after the release: %.1e of the largest energy\n", added);
   EXPECT_LE(added, 0.01);
   EXPECT_GE(added, -0.03);  // the nodes spring off: mass on their edges takes its share
   EXPECT_LE(run.summary.energy.balance_error, 1e-8);
 }
 
-TEST(SelectiveScaling, MakesFewerStepsAndTheSameDrape) {
+TEST(FibreInertia, MakesFewerStepsAndTheSameDrape) {
   RunResult runs[2];
   for (const int k : {0, 1}) {
     const Scene scene = drape(k == 0 ? 1 : 4);
@@ -396,16 +399,16 @@ TEST(SelectiveScaling, MakesFewerStepsAndTheSameDrape) {
 
 // Two by two light grippers hold nothing but each other: what is not symmetric about the mass of edges at
 // pads feeds the motion there once they touch. That must not pass for a result.
-TEST(SelectiveScaling, IsBlamedWhereItGivesEnergy) {
+TEST(FibreInertia, IsBlamedWhereItGivesEnergy) {
   Scene scene = test::corner_drape(0.02);
-  scene.options.selective_scaling = 4;
+  scene.options.fibre_mass_scaling = 4;
   const Schedule schedule = test::drop(scene, {.above = 2, .touch = 4, .end = 5});
   const RunResult run = simulate(Model(scene), {.schedule = &schedule});
   EXPECT_EQ(run.summary.status, RunStatus::diverged);
-  EXPECT_NE(run.summary.message.find("lower selective_scaling"), std::string::npos) << run.summary.message;
+  EXPECT_NE(run.summary.message.find("lower fibre_mass_scaling"), std::string::npos) << run.summary.message;
 }
 
-TEST(SelectiveScaling, PlaysAStepThatIsNotAboveTheTrueOne) {
+TEST(FibreInertia, PlaysAStepThatIsNotAboveTheTrueOne) {
   const Scene scene = drape(4);
   const Schedule schedule = drop(scene);
   const Model model(scene);
@@ -432,7 +435,7 @@ std::string refusal(const Scene& scene) {
   return "none";
 }
 
-TEST(SelectiveScaling, IsRefusedWithoutAStepThatFollowsTheStateOrWithoutRectangles) {
+TEST(FibreInertia, IsRefusedWithoutAStepThatFollowsTheStateOrWithoutRectangles) {
   Scene scene = drape(4);
   EXPECT_EQ(refusal(scene), "none");
   scene.options.step_interval = 0;
@@ -440,9 +443,9 @@ TEST(SelectiveScaling, IsRefusedWithoutAStepThatFollowsTheStateOrWithoutRectangl
   scene = Scene();
   scene.mesh = test::distorted_mesh(0.02, 0.02, 0.01, 0.2);  // of its four elements all share the moved node
   scene.fabric = test::woven_fabric();
-  scene.options.selective_scaling = 4;
+  scene.options.fibre_mass_scaling = 4;
   EXPECT_NE(refusal(scene).find("rectangles along the fibres"), std::string::npos) << refusal(scene);
-  scene.options.selective_scaling = 1;
+  scene.options.fibre_mass_scaling = 1;
   EXPECT_EQ(refusal(scene), "none");
 }
 

@@ -28,7 +28,8 @@ TEST(Gravity, PassesTheTermKit) {
   const std::vector<double> area = nodal_areas(scene.mesh);
   subject.energy = [&](const State& at) {
     double sum = 0;
-    for (size_t n = 0; n < area.size(); ++n) sum += scene.fabric.areal_density * area[n] * 9.81 * at.position.z[n];
+    for (size_t n = 0; n < area.size(); ++n)
+      sum += scene.fabric.areal_density * area[n] * 9.81 * at.position.z[n];
     return sum;
   };
   subject.length_step = 1e-3;  // the energy is linear
@@ -50,7 +51,7 @@ TEST(Loads, PassTheTermKit) {
   const std::vector<double> area = nodal_areas(scene.mesh);
   subject.energy = [&](const State& at) {
     double sum = -2 * push.dot(get(at.position, 2)) - moment * std::atan2(at.director.x[5], at.director.z[5]);
-    for (size_t n = 0; n < area.size(); ++n) sum -= area[n] * pressure.dot(get(at.x, n));
+    for (size_t n = 0; n < area.size(); ++n) sum -= area[n] * pressure.dot(get(at.position, n));
     return sum;
   };
   subject.tolerance = 1e-6;
@@ -64,7 +65,8 @@ TEST(Loads, TurnADirectorAboutTheirAxisWithTheirFullMoment) {
   const Model model(scene);
   test::TermSubject subject{.model = &model, .term = 1, .state = model.flat_state(0)};
   test::disturb(subject.state, model.node_count(), 0, 1);
-  const Eigen::Vector3d d = get(subject.state.director, 4), m = test::term_forces(subject, subject.state).moment[4];
+  const Eigen::Vector3d d = get(subject.state.director, 4),
+                        m = test::term_forces(subject, subject.state).moment[4];
   EXPECT_LE((d.cross(m) - (moment - moment.dot(d) * d)).norm(),
             1e-15);  // all of M but its part about d itself
 }

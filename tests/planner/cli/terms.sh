@@ -38,17 +38,17 @@ has "$work/incline/result.json" /energy/contact /energy/friction
 grep -q 'Name="gap"' "$work/incline/ply_000.vtu" || fail "no gap though there is a mold"
 
 # All at once.
-expect 0 simulate "$ladder" --out "$work/all" --frames 2 --set 'fem.mesh_size=20 mm' --set fem.selective_scaling=1.5 \
+expect 0 simulate "$ladder" --out "$work/all" --frames 2 --set 'fem.mesh_size=20 mm' --set fem.fibre_mass_scaling=1.5 \
   --set 'schedule.preshape_duration=10 ms' --set 'schedule.uniform.duration=10 ms' --set 'schedule.settle=0 s'
 all=$work/all/result.json
 has "$all" /energy/{kinetic,internal,external,friction,contact,damping,constraint,hourglass,balance_error} \
   /largest_penetration /largest_link_error /score/max_actuator_force
 lacks "$all" /probes
-same "terms: [shell with rates, 5 section points] [gravity] [contact with friction] [mass on fibres] [mass damping] [gripper rig with interlinks] [fixed joint]" \
+same "terms: [shell with rates, 5 section points] [gravity] [contact with friction] [fibre inertia] [mass damping] [gripper rig with interlinks] [fixed joint]" \
   "$(grep '^terms: ' "$work/stderr")" "terms of the whole ladder"
 grep -q 'Name="gap"' "$work/all/ply_000.vtu" || fail "no gap in a drape"
 # Without interlinks and a fixed joint there is no error of theirs, without damping nothing is damped.
-expect 0 simulate "$ladder" --json --set 'fem.mesh_size=20 mm' --set fem.selective_scaling=1 --set fem.rates=false \
+expect 0 simulate "$ladder" --json --set 'fem.mesh_size=20 mm' --set fem.fibre_mass_scaling=1 --set fem.rates=false \
   --set grippers.interlinks=false --set grippers.fixed=null --set damping=null --set friction=null \
   --set 'schedule.preshape_duration=10 ms' --set 'schedule.uniform.duration=10 ms' --set 'schedule.settle=0 s'
 has "$work/stdout" /energy/constraint /energy/contact

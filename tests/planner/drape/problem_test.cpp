@@ -30,7 +30,7 @@ TEST(DrapeProblem, MakesAModelOnceForAllThreads) {
 
 TEST(DrapeProblem, AsksForModelsThatCannotBeBuiltOnlyWhenTheyAreUsed) {
   const std::string coarse =
-      "fidelities.coarse={\"mesh_size\": \"25 mm\", \"selective_scaling\": 2, \"step_interval\": 0}";
+      "fidelities.coarse={\"mesh_size\": \"25 mm\", \"fibre_mass_scaling\": 2, \"step_interval\": 0}";
   const DrapeProblem problem(quick_case({coarse}));
   EXPECT_THROW(static_cast<void>(problem.model("coarse")), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(problem.model("coarse")), std::invalid_argument);  // asked again, too

@@ -67,7 +67,7 @@ TEST(StudySubject, SaysWhatAFidelityChanges) {
   EXPECT_EQ(through.mesh_size, direct.mesh_size);
   EXPECT_EQ(through.mass_scaling, direct.mass_scaling);
   EXPECT_EQ(through.time_scaling, direct.time_scaling);
-  EXPECT_EQ(through.selective_scaling, direct.selective_scaling);
+  EXPECT_EQ(through.fibre_mass_scaling, direct.fibre_mass_scaling);
 }
 
 TEST(StudySubject, SchedulesDifferAndBeginWithTheBaselines) {

@@ -71,16 +71,16 @@ void tell(const std::string& what, const Film& now, const Film& plain, double fa
       1e3 * now.lowest(), 100 * mean / fall, 100 * largest / fall);
 }
 
-TEST(SelectiveScaling, LeavesTheSwingOfASheetAsItIs) {
+TEST(FibreInertia, LeavesTheSwingOfASheetAsItIs) {
   const Film plain = film(swinging_sheet());
   const double fall = -plain.lowest();
   tell("none", plain, plain, fall);
   EXPECT_GE(fall, 0.5 * kSide);
   for (const double scaling : {4.0, 8.0}) {
     Scene scene = swinging_sheet();
-    scene.options.selective_scaling = scaling;
+    scene.options.fibre_mass_scaling = scaling;
     const Film now = film(scene);
-    tell("selective " + std::to_string(int(scaling)), now, plain, fall);
+    tell("fibre mass x " + std::to_string(int(scaling)), now, plain, fall);
     // The step without added mass follows the state, up to 1.45 times that for the steepest slopes.
     EXPECT_GE(double(plain.steps) / double(now.steps), 0.65 * scaling);
     EXPECT_LE(apart(now, plain).first, 5e-4 * fall);
@@ -109,12 +109,12 @@ Scene hanging_strip() {
   return scene;
 }
 
-TEST(SelectiveScaling, LeavesTheSagOfAStripAsItIs) {
+TEST(FibreInertia, LeavesTheSagOfAStripAsItIs) {
   constexpr double kTime = 2;  // [s]
   std::vector<RunResult> runs;
   for (const double scaling : {1.0, 4.0, 8.0}) {
     Scene scene = hanging_strip();
-    scene.options.selective_scaling = scaling;
+    scene.options.fibre_mass_scaling = scaling;
     runs.push_back(simulate(Model(scene), {.duration = kTime}));
     ASSERT_EQ(runs.back().summary.status, RunStatus::done) << runs.back().summary.message;
   }
