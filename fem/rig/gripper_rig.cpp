@@ -13,8 +13,6 @@ using Eigen::Vector3d;
 constexpr double kServoDamping = 1;   // damping ratio of a joint on its actuator: a servo does not ring
 constexpr double kStartSlack = 1e-6;  // [m]; a schedule is rounded to it
 
-std::string gripper_name(const RigOptions& rig, int index);
-
 bool is_finite(const Knot& knot) {
   return std::isfinite(knot.time) && std::isfinite(knot.z);
 }
@@ -27,7 +25,7 @@ template <class AnyKnot>
 void check_knots(const RigOptions& rig, const std::vector<std::vector<AnyKnot>>& paths) {
   for (size_t g = 0; g < paths.size(); ++g) {
     const auto fail = [&](const std::string& what) {
-      throw std::invalid_argument("the path of " + gripper_name(rig, int(g)) + " " + what);
+      throw std::invalid_argument("the path of gripper " + rig.name(int(g)) + " " + what);
     };
     if (paths[g].empty()) fail("has no knots");
     for (size_t k = 0; k < paths[g].size(); ++k) {
@@ -35,11 +33,6 @@ void check_knots(const RigOptions& rig, const std::vector<std::vector<AnyKnot>>&
       if (k > 0 && !(paths[g][k].time > paths[g][k - 1].time)) fail("has times that do not increase");
     }
   }
-}
-
-std::string gripper_name(const RigOptions& rig, int index) {
-  return "gripper [" + std::to_string(index % rig.columns + 1) + ", " +
-         std::to_string(index / rig.columns + 1) + "]";
 }
 
 void book(State& state, Book entry, double work) {
@@ -115,7 +108,8 @@ GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>
     }
     pad.last = int(tied_.size());
     if (pad.last == pad.first) {
-      throw std::invalid_argument(gripper_name(rig, g) + " has no ply node under its pad: refine the mesh");
+      throw std::invalid_argument("gripper " + rig.name(g) +
+                                  " has no ply node under its pad: refine the mesh");
     }
     lay_patches(pad);
     pads_.push_back(pad);
@@ -195,7 +189,7 @@ void GripperRig::check(const Schedule& schedule) const {
   for (int g = 0; g < rig_.count(); ++g) {
     const Eigen::Vector2d apart = schedule.plane_paths[size_t(g)].front().xy - place_[size_t(g)];
     if (apart.norm() <= kStartSlack) continue;
-    throw std::invalid_argument("the in-plane path of " + gripper_name(rig_, g) + " starts " +
+    throw std::invalid_argument("the in-plane path of gripper " + rig_.name(g) + " starts " +
                                 std::to_string(1e3 * apart.norm()) + " mm off its joint's place, (" +
                                 std::to_string(1e3 * place_[size_t(g)].x()) + ", " +
                                 std::to_string(1e3 * place_[size_t(g)].y()) + ") mm");

@@ -32,7 +32,7 @@ LinkSystem::LinkSystem(const RigOptions& rig, const std::vector<Eigen::Vector2d>
   for (const auto& [i, j] : interlinks(rig))
     rows_.push_back({.i = i, .j = j, .axis = -1, .value = rig.spacing});
   if (rig.fixed) {
-    const int g = ((*rig.fixed)[1] - 1) * rig.columns + (*rig.fixed)[0] - 1;
+    const int g = rig.gripper_at(*rig.fixed);
     for (int axis = 0; axis < 2; ++axis)
       rows_.push_back({.i = g, .j = -1, .axis = axis, .value = place[size_t(g)][axis]});
   }

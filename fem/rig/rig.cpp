@@ -75,6 +75,11 @@ std::vector<double> row_places(const RigOptions& rig, double mesh_size) {
   return lines_through(places, rig.pad_radius, mesh_size);
 }
 
+std::string RigOptions::name(int gripper) const {
+  const auto [i, j] = indices(gripper);
+  return '[' + std::to_string(i) + ", " + std::to_string(j) + ']';
+}
+
 std::vector<std::array<int, 2>> interlinks(const RigOptions& rig) {
   std::vector<std::array<int, 2>> pairs;
   if (!rig.interlinks) return pairs;

@@ -5,6 +5,7 @@
 #include <array>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace drapeplan {
@@ -25,8 +26,7 @@ struct RotationLimits {
   Eigen::Vector2d about_weft{-0.5 * std::numbers::pi, 0.5 * std::numbers::pi};
 };
 
-/// Rectangular grid of grippers, centred on the ply. Gripper (i, j) of files counts from 1, i along the warp;
-/// its index is (j - 1) * columns + (i - 1).
+/// Rectangular grid of grippers, centred on the ply, numbered row by row: the rows run along the warp.
 struct RigOptions {
   int columns = 0;                                  ///< along the warp
   int rows = 0;                                     ///< along the weft
@@ -38,7 +38,7 @@ struct RigOptions {
   std::optional<RotationLimits> rotation_limits;    ///< beside the tilt limit
   Driven driven = Driven::z;
   bool interlinks = true;                   ///< rigid bars between neighbouring joints
-  std::optional<std::array<int, 2>> fixed;  ///< gripper (i, j) whose joint is fixed in-plane
+  std::optional<std::array<int, 2>> fixed;  ///< gripper [i, j] whose joint is fixed in-plane
   double actuator_stiffness = 1e4;          ///< [N/m]
   double actuator_force_limit = 50;         ///< [N]
   double max_velocity = 0.2;                ///< of a joint, vertical or in-plane [m/s]
@@ -47,6 +47,15 @@ struct RigOptions {
   std::optional<double> release_time;
 
   [[nodiscard]] int count() const { return columns * rows; }
+  /// People call a gripper [i, j], i along the warp, j along the weft, both from 1.
+  [[nodiscard]] std::array<int, 2> indices(int gripper) const {
+    return {gripper % columns + 1, gripper / columns + 1};
+  }
+  [[nodiscard]] int gripper_at(const std::array<int, 2>& indices) const {
+    return (indices[1] - 1) * columns + indices[0] - 1;
+  }
+  /// "[i, j]"
+  [[nodiscard]] std::string name(int gripper) const;
   /// Place of gripper `index` in the ply frame (u, v) [m].
   [[nodiscard]] Eigen::Vector2d place(int index) const {
     return {(index % columns - 0.5 * (columns - 1)) * spacing,

@@ -32,7 +32,7 @@ std::string ply_text(const Ply& ply) {
 
 /// Without an outline a ply is a rectangle, whose size must be stated.
 void check_ply(const CaseFields& fields, FieldReader& reader) {
-  const Polygon& outline = fields.value.ply.outline;
+  const Polygon& outline = fields.definition.ply.outline;
   const bool stated_well = reader.good("/ply");
   for (const auto& [name, size] : {std::pair{"width", fields.width}, {"height", fields.height}}) {
     if (!outline.empty() && size)
@@ -67,15 +67,15 @@ void check_cells(FieldReader& reader, const std::string& pointer, const Ply& ply
 }
 
 void check_mapping(const CaseFields& fields, FieldReader& reader) {
-  const auto& mapping = fields.value.mapping;
+  const auto& mapping = fields.definition.mapping;
   if (!mapping || !reader.good("/mapping")) return;
-  check_cells(reader, reader.good("/mapping/cell_size") ? "/mapping/cell_size" : "/mapping", fields.value.ply,
-              mapping->cell_size);
+  check_cells(reader, reader.good("/mapping/cell_size") ? "/mapping/cell_size" : "/mapping",
+              fields.definition.ply, mapping->cell_size);
   const bool start_stated = reader.good("/mapping/ply_start");
-  if (!on_ply(fields.value.ply, mapping->ply_start)) {
+  if (!on_ply(fields.definition.ply, mapping->ply_start)) {
     reader.fail(start_stated ? "/mapping/ply_start" : "/mapping",
                 std::string(start_stated ? "lies" : "its ply_start, the ply's origin, lies") +
-                    " outside the ply; " + ply_text(fields.value.ply));
+                    " outside the ply; " + ply_text(fields.definition.ply));
   }
   if (!fields.mold || !reader.good("/mold")) return;
   const Extent& extent = fields.mold->extent;
@@ -100,14 +100,12 @@ void check_rotation_limits(const RigOptions& rig, FieldReader& reader) {
 }
 
 void check_grippers(const CaseFields& fields, FieldReader& reader) {
-  if (!fields.value.grippers || !reader.good("/grippers")) return;
-  const RigOptions& rig = *fields.value.grippers;
+  if (!fields.definition.grippers || !reader.good("/grippers")) return;
+  const RigOptions& rig = *fields.definition.grippers;
   for (int g = rig.count() - 1; g >= 0 && reader.good("/ply"); --g) {
-    if (on_ply(fields.value.ply, rig.place(g))) continue;
-    reader.fail("/grippers/spacing", "gripper [" + std::to_string(g % rig.columns + 1) + ", " +
-                                         std::to_string(g / rig.columns + 1) +
-                                         "] is off the ply: its pad's centre lies at " +
-                                         place_text(rig.place(g)) + "; " + ply_text(fields.value.ply));
+    if (on_ply(fields.definition.ply, rig.place(g))) continue;
+    reader.fail("/grippers/spacing", "gripper " + rig.name(g) + " is off the ply: its pad's centre lies at " +
+                                         place_text(rig.place(g)) + "; " + ply_text(fields.definition.ply));
     break;
   }
   if (rig.count() > 1 && rig.spacing < 2 * rig.pad_radius) {
@@ -128,8 +126,8 @@ void check_grippers(const CaseFields& fields, FieldReader& reader) {
   if (!rig.fixed) return;
   const auto [i, j] = *rig.fixed;
   if (i < 1 || i > rig.columns || j < 1 || j > rig.rows) {
-    reader.fail("/grippers/fixed", "there is no such gripper; allowed: [1, 1] to [" +
-                                       std::to_string(rig.columns) + ", " + std::to_string(rig.rows) + "]");
+    reader.fail("/grippers/fixed",
+                "there is no such gripper; allowed: [1, 1] to " + rig.name(rig.count() - 1));
   }
 }
 
@@ -137,14 +135,14 @@ void check_grippers(const CaseFields& fields, FieldReader& reader) {
 /// between.
 void check_grips(const CaseFields& fields, FieldReader& reader) {
   std::set<std::string> names;
-  for (size_t k = 0; k < fields.value.grips.size(); ++k) {
-    const GripOptions& grip = fields.value.grips[k];
+  for (size_t k = 0; k < fields.definition.grips.size(); ++k) {
+    const GripOptions& grip = fields.definition.grips[k];
     const std::string pointer = "/grips/" + std::to_string(k);
     if (reader.good(pointer + "/name") && !names.insert(grip.name).second)
       reader.fail(pointer + "/name", "another grip has the same name");
     if (!reader.good("/ply") || !reader.good(pointer + "/from") || !reader.good(pointer + "/to")) continue;
     if ((grip.to - grip.from).norm() <= kOnOutline) reader.fail(pointer, "its ends coincide");
-    const Polygon outline = corners_of(fields.value.ply);
+    const Polygon outline = corners_of(fields.definition.ply);
     const auto off = [&outline](const Eigen::Vector2d& place) {
       return (nearest_on_edges(outline, place) - place).norm() > kOnOutline;
     };
@@ -157,14 +155,14 @@ void check_grips(const CaseFields& fields, FieldReader& reader) {
 
 void check_probes(const CaseFields& fields, FieldReader& reader) {
   std::set<std::string> names;
-  for (const GripOptions& grip : fields.value.grips) names.insert(grip.name);
-  for (size_t k = 0; k < fields.value.probes.size(); ++k) {
-    const Probe& probe = fields.value.probes[k];
+  for (const GripOptions& grip : fields.definition.grips) names.insert(grip.name);
+  for (size_t k = 0; k < fields.definition.probes.size(); ++k) {
+    const Probe& probe = fields.definition.probes[k];
     const std::string pointer = "/probes/" + std::to_string(k);
     if (reader.good(pointer + "/name") && !names.insert(probe.name).second) {
       reader.fail(pointer + "/name", "another probe or grip has the same name");
     }
-    if (reader.good("/ply")) check_on_ply(reader, pointer + "/place", fields.value.ply, probe.place);
+    if (reader.good("/ply")) check_on_ply(reader, pointer + "/place", fields.definition.ply, probe.place);
   }
 }
 
@@ -194,7 +192,7 @@ void check_rates(FieldReader& reader, const std::string& mode, const CurveFields
 
 /// A ply that is mapped is measured there, with a warning; one that is only laid down must lie on the mold.
 void check_on_mold(const CaseFields& fields, FieldReader& reader) {
-  const Case& c = fields.value;
+  const Case& c = fields.definition;
   if (!fields.mold || !fields.material || c.mapping || !reader.good("/mold/extent")) return;
   const Extent& extent = fields.mold->extent;
   double beyond = 0;
@@ -240,7 +238,7 @@ void check_material(const CaseFields& fields, FieldReader& reader) {
 }  // namespace
 
 void check_case(const CaseFields& fields, FieldReader& reader) {
-  const Case& c = fields.value;
+  const Case& c = fields.definition;
   check_ply(fields, reader);
   check_material(fields, reader);
   check_grippers(fields, reader);

@@ -121,7 +121,7 @@ MoldFields mold_fields(const Mold& mold) {
 }  // namespace
 
 void complete_ply(CaseFields& fields) {
-  Ply& ply = fields.value.ply;
+  Ply& ply = fields.definition.ply;
   const Eigen::Vector2d size = bounding_box(ply.outline).sizes();
   ply.width = ply.outline.empty() ? fields.width.value_or(0) : size.x();
   ply.height = ply.outline.empty() ? fields.height.value_or(0) : size.y();
@@ -140,7 +140,7 @@ StressTable stress_table(const CurveFields& fields) {
 }
 
 void complete_case(CaseFields& fields) {
-  Case& c = fields.value;
+  Case& c = fields.definition;
   if (const auto& m = fields.material) {
     c.material = fabric_of(*m);
     c.material_notes = {m->name, m->source, m->tension.source, m->compression.source, m->shear.source};
@@ -150,20 +150,21 @@ void complete_case(CaseFields& fields) {
   c.fidelities.try_emplace("report", fields.fem);
 }
 
-CaseFields fields_of(const Case& value) {
+CaseFields fields_of(const Case& definition) {
   CaseFields fields;
-  fields.value = value;
-  if (value.ply.outline.empty()) {
-    fields.width = value.ply.width;
-    fields.height = value.ply.height;
+  fields.definition = definition;
+  if (definition.ply.outline.empty()) {
+    fields.width = definition.ply.width;
+    fields.height = definition.ply.height;
   }
-  if (value.material.thickness > 0) fields.material = material_fields(value.material, value.material_notes);
-  if (value.mold) fields.mold = mold_fields(*value.mold);
-  if (value.damping) fields.damping.emplace().alpha = *value.damping;
-  const auto report = fields.value.fidelities.find("report");
-  if (report != fields.value.fidelities.end()) {
+  if (definition.material.thickness > 0)
+    fields.material = material_fields(definition.material, definition.material_notes);
+  if (definition.mold) fields.mold = mold_fields(*definition.mold);
+  if (definition.damping) fields.damping.emplace().alpha = *definition.damping;
+  const auto report = fields.definition.fidelities.find("report");
+  if (report != fields.definition.fidelities.end()) {
     fields.fem = report->second;
-    fields.value.fidelities.erase(report);  // it is `fem` itself
+    fields.definition.fidelities.erase(report);  // it is `fem` itself
   }
   return fields;
 }

@@ -9,8 +9,8 @@ namespace drapeplan {
 namespace {
 
 void visit_ply(FieldVisitor& v, CaseFields& fields) {
-  Ply& ply = fields.value.ply;
-  Start& start = fields.value.start;
+  Ply& ply = fields.definition.ply;
+  Start& start = fields.definition.start;
   v.field({"width", &fields.width, "Size along the warp (u); the origin of (u, v) is in the middle",
            Dimension::length, positive(kLargestLength), false, "needed without `outline`"});
   v.field({"height", &fields.height, "Size along the weft (v)", Dimension::length, positive(kLargestLength),
@@ -207,7 +207,7 @@ void visit_fem(FieldVisitor& v, FemOptions& f) {
 }
 
 void visit_physics(FieldVisitor& v, CaseFields& fields) {
-  Case& c = fields.value;
+  Case& c = fields.definition;
   optional_section(
       v, {"friction", "Coulomb friction between ply and mold", false, {"mold", "material"}}, c.friction, 0.0,
       [&v](double& coefficient) {
@@ -298,7 +298,7 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
 }  // namespace
 
 void visit_case(FieldVisitor& v, CaseFields& fields) {
-  Case& c = fields.value;
+  Case& c = fields.definition;
   int format = 0;
   v.field({"format", choice(format, {kCaseFormat}), "What this file is", Dimension::none, {}, true});
   v.field(

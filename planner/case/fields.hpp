@@ -59,7 +59,7 @@ struct DampingFields {
 
 /// A case as the file states it; sections that need work to become a Case stand beside it.
 struct CaseFields {
-  Case value;
+  Case definition;
   std::optional<MaterialFields> material;
   std::optional<MoldFields> mold;
   std::optional<double> width, height;  ///< of a rectangular ply
@@ -80,6 +80,6 @@ StressTable stress_table(const CurveFields& fields);
 
 /// Fields into a case and back. `complete` expects fields without errors.
 void complete_case(CaseFields& fields);
-CaseFields fields_of(const Case& value);
+CaseFields fields_of(const Case& definition);
 
 }  // namespace drapeplan

@@ -15,7 +15,7 @@ CaseReading read_case(const std::filesystem::path& file, const std::vector<std::
   reading.errors = document.errors();
   if (!document.root().is_object()) return reading;
   CaseFields fields;
-  fields.value.name = file.stem().string();
+  fields.definition.name = file.stem().string();
   FieldReader reader(document);
   reader.read([&fields](FieldVisitor& visitor) { visit_case(visitor, fields); });
   complete_ply(fields);
@@ -23,12 +23,12 @@ CaseReading read_case(const std::filesystem::path& file, const std::vector<std::
   reading.errors.insert(reading.errors.end(), reader.errors().begin(), reader.errors().end());
   document.sort(reading.errors);
   if (reading.errors.empty()) complete_case(fields);
-  reading.value = std::move(fields.value);
+  reading.definition = std::move(fields.definition);
   return reading;
 }
 
-nlohmann::json resolved_case(const Case& value) {
-  CaseFields fields = fields_of(value);
+nlohmann::json resolved_case(const Case& definition) {
+  CaseFields fields = fields_of(definition);
   FieldWriter writer;
   visit_case(writer, fields);
   return writer.result();

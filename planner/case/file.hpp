@@ -13,7 +13,7 @@
 namespace drapeplan {
 
 struct CaseReading {
-  Case value;                      ///< only meaningful without errors
+  Case definition;                 ///< only meaningful without errors
   std::vector<InputError> errors;  ///< all of them, in the order of the file
 };
 
@@ -23,7 +23,7 @@ CaseReading read_case(const std::filesystem::path& file, const std::vector<std::
 
 /// The complete case with all defaults as JSON, in the file's own format and units, self-contained (a
 /// referenced material or mold is written out). Reading it again gives the same case.
-nlohmann::json resolved_case(const Case& value);
+nlohmann::json resolved_case(const Case& definition);
 
 /// JSON Schema (draft 2020-12) of the case file.
 nlohmann::json case_schema();

@@ -71,15 +71,15 @@ double highest(const Mold& mold) {
   return top;
 }
 
-Scene scene_of(const Case& value, const BenchScene& bench) {
-  FemOptions options = value.fidelities.at(kReport);
-  if (bench.kind == Kind::as_it_is) return scene_of(value, options);
+Scene scene_of(const Case& definition, const BenchScene& bench) {
+  FemOptions options = definition.fidelities.at(kReport);
+  if (bench.kind == Kind::as_it_is) return scene_of(definition, options);
   options.mesh_size = bench.mesh_size;
   options.section_points = bench.section_points;
   options.rates = bench.rates;
   options.fibre_mass_scaling = bench.fibre_mass_scaling;
   options.precision = bench.precision;
-  Scene scene = scene_of(value, options);
+  Scene scene = scene_of(definition, options);
   if (bench.kind != Kind::drape) {
     scene.rig.reset();
     scene.start_height = highest(*scene.mold) + scene.fabric.thickness;
@@ -141,12 +141,12 @@ json scene_json(const BenchScene& bench, const Model& model, const Throughput& m
           {"same_hash_in_all_repeats", measured.same_hash}};
 }
 
-json measure_scene(const Case& value, const BenchScene& bench, const Schedule& schedule,
+json measure_scene(const Case& definition, const BenchScene& bench, const Schedule& schedule,
                    const BenchOptions& options) {
   constexpr double kStart = 0.05;      // of the schedule [s]: warm, and every scene still moves freely
   constexpr double kFirstStep = 1e-9;  // with --steps [s]: counted runs are slow, and need no warming up
   constexpr double kEnd = 10;          // of the scenes without grippers [s]
-  const Model model(scene_of(value, bench));
+  const Model model(scene_of(definition, bench));
   const bool timed = options.steps == 0;
   const double peak = timed ? fma_peak() : 0;  // measured anew: the clock may have changed
   const ThroughputRequest request{.schedule = model.rig() ? &schedule : nullptr,
@@ -252,9 +252,9 @@ std::optional<std::vector<BenchScene>> chosen_scenes(const std::vector<std::stri
 }
 
 /// The uniform schedule of a case with grippers; of another, none.
-Schedule uniform_schedule(const Case& value) {
-  if (!value.grippers) return {};
-  const DrapeProblem problem(value);
+Schedule uniform_schedule(const Case& definition) {
+  if (!definition.grippers) return {};
+  const DrapeProblem problem(definition);
   return to_schedule(problem.frame(), uniform_strokes(problem.frame()));
 }
 
@@ -263,22 +263,22 @@ int bench(const BenchOptions& options) {
   if (!scenes) return kInputWrong;
   const bool as_it_is = scenes->size() == 1 && scenes->front().kind == Kind::as_it_is;
   using Sections = std::vector<std::string>;
-  const std::optional<Case> value =
+  const std::optional<Case> definition =
       load_case(options.file, options.common,
                 as_it_is ? Sections{"material"} : Sections{"mapping", "grippers", "material", "mold"});
-  if (!value) return kInputWrong;
-  const Schedule schedule = uniform_schedule(*value);
+  if (!definition) return kInputWrong;
+  const Schedule schedule = uniform_schedule(*definition);
   json result = {{"machine", machine_json(options)}, {"scenes", json::array()}};
   std::string text = options.steps > 0 ? "" : heading(result["machine"]);
   bool same = true;
   for (const BenchScene& scene : *scenes) {
     if (!options.common.quiet) std::cerr << scene.name << " ...\n";
-    json entry = measure_scene(*value, scene, schedule, options);
+    json entry = measure_scene(*definition, scene, schedule, options);
     same = same && entry["same_hash_in_all_repeats"].get<bool>();
     text += scene_line(entry);
     result["scenes"].push_back(std::move(entry));
   }
-  const int code = deliver(result, text, options.common, &*value);
+  const int code = deliver(result, text, options.common, &*definition);
   if (!options.common.out.empty())
     write_text(std::filesystem::path(options.common.out) / "bench.csv", csv(result));
   if (!same) {

@@ -30,7 +30,7 @@ int check(const CheckOptions& options) {
     cases.push_back({{"file", file}, {"valid", reading.errors.empty()}, {"errors", std::move(errors)}});
     if (reading.errors.empty()) text += file + ": good\n";
     all.insert(all.end(), reading.errors.begin(), reading.errors.end());
-    single = std::move(reading.value);
+    single = std::move(reading.definition);
   }
   CommonOptions delivery = options.common;
   if (!all.empty()) delivery.out.clear();  // wrong input: nothing is written

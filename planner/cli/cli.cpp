@@ -10,11 +10,11 @@ namespace {
 
 constexpr int kIndent = 2;  // of JSON output
 
-bool has_section(const Case& value, const std::string& name) {
-  if (name == "mapping") return value.mapping.has_value();
-  if (name == "grippers") return value.grippers.has_value();
-  if (name == "mold") return value.mold.has_value();
-  return value.material.thickness > 0;
+bool has_section(const Case& definition, const std::string& name) {
+  if (name == "mapping") return definition.mapping.has_value();
+  if (name == "grippers") return definition.grippers.has_value();
+  if (name == "mold") return definition.mold.has_value();
+  return definition.material.thickness > 0;
 }
 
 bool write_json(const std::filesystem::path& file, const nlohmann::json& value) {
@@ -54,7 +54,7 @@ std::optional<Case> load_case(const std::string& file, const CommonOptions& opti
   CaseReading reading = read_case(file, options.overrides);
   if (reading.errors.empty()) {
     for (const std::string& need : needs) {
-      if (has_section(reading.value, need)) continue;
+      if (has_section(reading.definition, need)) continue;
       reading.errors.push_back(
           {file, 0, "", "this verb needs the section \"" + need + "\", which is absent"});
     }
@@ -68,8 +68,8 @@ std::optional<Case> load_case(const std::string& file, const CommonOptions& opti
     std::cerr << options.out << ": --out must be a folder\n";
     return std::nullopt;
   }
-  if (options.seed) reading.value.optimise.seed = *options.seed;
-  return std::move(reading.value);
+  if (options.seed) reading.definition.optimise.seed = *options.seed;
+  return std::move(reading.definition);
 }
 
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options) {

@@ -27,10 +27,10 @@ json points_json(const std::vector<Eigen::Vector3d>& points) {
   return list;
 }
 
-json result_json(const Case& value, const MapResult& map) {
+json result_json(const Case& definition, const MapResult& map) {
   json targets = json::array();
   for (size_t k = 0; k < map.targets.size(); ++k) {
-    const int columns = value.grippers->columns;
+    const int columns = definition.grippers->columns;
     const json gripper = {1 + int(k) % columns, 1 + int(k) / columns};
     targets.push_back({{"gripper", gripper}, {"position", point_json(map.targets[k])}});
   }
@@ -48,18 +48,18 @@ std::string millimetres(const std::string& label, const Eigen::Vector3d& p) {
   return line;
 }
 
-std::string result_text(const Case& value, const MapResult& map) {
+std::string result_text(const Case& definition, const MapResult& map) {
   char line[160];
   std::snprintf(line, sizeof line,
                 "%s: shear angle largest %.2f deg, mean %.2f deg; net of %zu x %zu cells\n\n",
-                value.name.substr(0, 60).c_str(), map.max_shear_deg, map.mean_shear_deg, map.net.u.size() - 1,
-                map.net.v.size() - 1);
+                definition.name.substr(0, 60).c_str(), map.max_shear_deg, map.mean_shear_deg,
+                map.net.u.size() - 1, map.net.v.size() - 1);
   std::string text = line;
   text += "  place             x [mm]    y [mm]    z [mm]\n";
   const char* corners[] = {"corner (-,-)", "corner (+,-)", "corner (+,+)", "corner (-,+)"};
   for (size_t k = 0; k < map.corners.size(); ++k) text += millimetres(corners[k], map.corners[k]);
   for (size_t k = 0; k < map.targets.size(); ++k) {
-    const int columns = value.grippers->columns;
+    const int columns = definition.grippers->columns;
     text += millimetres(
         "gripper " + std::to_string(1 + int(k) % columns) + "," + std::to_string(1 + int(k) / columns),
         map.targets[k]);
@@ -68,12 +68,13 @@ std::string result_text(const Case& value, const MapResult& map) {
 }
 
 int map(const MapOptions& options) {
-  const std::optional<Case> value = load_case(options.file, options.common, {"mapping"});
-  if (!value) return kInputWrong;
+  const std::optional<Case> definition = load_case(options.file, options.common, {"mapping"});
+  if (!definition) return kInputWrong;
   try {
-    const MapResult result = map_case(*value);
-    print_warnings(map_warnings(*value, result), options.common);
-    return deliver(result_json(*value, result), result_text(*value, result), options.common, &*value);
+    const MapResult result = map_case(*definition);
+    print_warnings(map_warnings(*definition, result), options.common);
+    return deliver(result_json(*definition, result), result_text(*definition, result), options.common,
+                   &*definition);
   } catch (const std::domain_error& error) {
     std::cerr << options.file << ": the ply cannot be mapped: " << error.what() << '\n';
     return kNotFinished;

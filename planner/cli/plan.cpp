@@ -70,7 +70,7 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
              {"status", problem.reach().status},
              {"meaning", explain_reach(problem.reach_problem(), problem.reach())}};
   return {
-      {"case", problem.value().name},
+      {"case", problem.definition().name},
       {"terms", problem.model(kReport).term_names()},
       {"reach", reach},
       {"map",
@@ -99,20 +99,20 @@ struct PlannedCase {
 };
 
 /// Plans one case into its folder; throws what went wrong.
-PlannedCase plan_case(Case value, const PlanVerbOptions& options, const std::filesystem::path& folder) {
+PlannedCase plan_case(Case definition, const PlanVerbOptions& options, const std::filesystem::path& folder) {
   const bool talk = !options.common.quiet;
-  const std::string name = value.name;
-  const DrapeProblem problem(std::move(value));
-  for (const std::string& fidelity : plan_fidelities(problem.value()))
+  const std::string name = definition.name;
+  const DrapeProblem problem(std::move(definition));
+  for (const std::string& fidelity : plan_fidelities(problem.definition()))
     static_cast<void>(problem.model(fidelity));  // what cannot be built is found before anything is written
   if (talk) {
     std::cerr << name << ": mapped, shear at most " << problem.mapping().max_shear_deg
               << " deg\n  terms: " << terms_line(problem.model(kReport))
               << "\n  reach: " << explain_reach(problem.reach_problem(), problem.reach()) << '\n';
   }
-  print_warnings(map_warnings(problem.value(), problem.mapping()), options.common);
+  print_warnings(map_warnings(problem.definition(), problem.mapping()), options.common);
   std::filesystem::create_directories(folder);
-  write_text(folder / "resolved.json", resolved_case(problem.value()).dump(2) + "\n");
+  write_text(folder / "resolved.json", resolved_case(problem.definition()).dump(2) + "\n");
   ProgressLine line;
   const PlanResult result =
       plan(problem, {folder, options.resume, options.common.threads}, [&](const Progress& progress) {
@@ -156,15 +156,15 @@ bool share_a_folder(const std::vector<std::string>& files,
 }
 
 /// Plans one case and adds its result to the list: of a case that could not be planned, its name and why.
-ExitCode plan_and_add(Case value, const std::string& file, const PlanVerbOptions& options,
+ExitCode plan_and_add(Case definition, const std::string& file, const PlanVerbOptions& options,
                       const std::filesystem::path& folder, json& results) {
-  const std::string name = value.name;
+  const std::string name = definition.name;
   const auto failed = [&](const std::string& reason) {
     std::cerr << file << ": " << reason << '\n';
     results.push_back({{"case", name}, {"status", "not finished"}, {"reason", reason}});
   };
   try {
-    PlannedCase planned = plan_case(std::move(value), options, folder);
+    PlannedCase planned = plan_case(std::move(definition), options, folder);
     results.push_back(std::move(planned.result));
     if (!planned.valid) std::cerr << file << ": no drape could be simulated to its end\n";
     return planned.valid ? kDone : kNotFinished;
@@ -184,9 +184,9 @@ int plan_all(const PlanVerbOptions& options) {
   const std::vector<std::filesystem::path> folders = run_folders(options);
   bool wrong = share_a_folder(options.files, folders);
   for (const std::string& file : options.files) {
-    std::optional<Case> value = load_case(file, options.common, {"grippers", "material"});
-    wrong = wrong || !value;
-    if (value) cases.push_back(std::move(*value));
+    std::optional<Case> definition = load_case(file, options.common, {"grippers", "material"});
+    wrong = wrong || !definition;
+    if (definition) cases.push_back(std::move(*definition));
   }
   if (wrong) return kInputWrong;
   json results = json::array();

@@ -38,7 +38,7 @@ std::string result_text(const ReachProblem& problem, const ReachResult& reach) {
                 "smallest possible distance to the targets: r.m.s. %.2f mm, largest %.2f mm\n\n",
                 1e3 * reach.floor_rms, 1e3 * reach.floor_max);
   std::string text = cell;
-  text += "  distance [mm] of gripper (i, j) at the r.m.s. optimum\n";
+  text += "  distance [mm] of gripper [i, j] at the r.m.s. optimum\n";
   for (int j = problem.rig.rows - 1; j >= 0; --j) {
     std::snprintf(cell, sizeof cell, "  j = %-3d", j + 1);
     text += cell;
@@ -57,15 +57,15 @@ std::string result_text(const ReachProblem& problem, const ReachResult& reach) {
 }
 
 int reach(const ReachOptions& options) {
-  const std::optional<Case> value = load_case(options.file, options.common, {"grippers"});
-  if (!value) return kInputWrong;
+  const std::optional<Case> definition = load_case(options.file, options.common, {"grippers"});
+  if (!definition) return kInputWrong;
   try {
-    const MapResult map = map_case(*value);
-    print_warnings(map_warnings(*value, map), options.common);
-    const ReachProblem problem = reach_problem_of(*value, map.targets);
-    const ReachResult result = solve_reach(problem, kRandomStarts, value->optimise.seed);
+    const MapResult map = map_case(*definition);
+    print_warnings(map_warnings(*definition, map), options.common);
+    const ReachProblem problem = reach_problem_of(*definition, map.targets);
+    const ReachResult result = solve_reach(problem, kRandomStarts, definition->optimise.seed);
     const int code =
-        deliver(result_json(problem, result), result_text(problem, result), options.common, &*value);
+        deliver(result_json(problem, result), result_text(problem, result), options.common, &*definition);
     if (!result.converged) std::cerr << options.file << ": not converged: " << result.status << '\n';
     return result.converged ? code : kNotFinished;
   } catch (const std::domain_error& error) {

@@ -89,9 +89,9 @@ void print_terms(const Model& model, const CommonOptions& options) {
 }
 
 /// Displacements of the named points, of the node nearest to each; displacements and forces of the grips.
-json probes_json(const Case& value, const Model& model, const Snapshot& start, const Snapshot& end) {
+json probes_json(const Case& definition, const Model& model, const Snapshot& start, const Snapshot& end) {
   json probes = json::object();
-  for (const Probe& probe : value.probes) {
+  for (const Probe& probe : definition.probes) {
     const auto& rest = model.scene().mesh.rest;
     size_t nearest = 0;
     for (size_t n = 1; n < rest.size(); ++n) {
@@ -110,13 +110,13 @@ json probes_json(const Case& value, const Model& model, const Snapshot& start, c
 }
 
 /// A case without grippers: strips and specimens.
-int simulate_free(const Case& value, const SimulateOptions& options) {
-  const Model model(scene_of(value, value.fidelities.at(options.fidelity)));
+int simulate_free(const Case& definition, const SimulateOptions& options) {
+  const Model model(scene_of(definition, definition.fidelities.at(options.fidelity)));
   const PartOfRun part = part_of_run(options, model);
   print_terms(model, options.common);
   std::vector<Snapshot> frames;
   RunRequest request;
-  request.duration = value.duration;
+  request.duration = definition.duration;
   request.from = part.from ? &*part.from : nullptr;
   request.pause = part.pause;
   request.frames = options.common.out.empty() ? 0 : options.frames;
@@ -126,9 +126,9 @@ int simulate_free(const Case& value, const SimulateOptions& options) {
   finish_run(options, model, run, result);
   result["terms"] = model.term_names();
   json probes = json::object();
-  if (!value.probes.empty() || !value.grips.empty()) {
-    const Snapshot start = take_snapshot(model, model.flat_state(value.start_height), RigDrive{});
-    result["probes"] = probes = probes_json(value, model, start, run.final);
+  if (!definition.probes.empty() || !definition.grips.empty()) {
+    const Snapshot start = take_snapshot(model, model.flat_state(definition.start_height), RigDrive{});
+    result["probes"] = probes = probes_json(definition, model, start, run.final);
   }
   std::string text = summary_text(run.summary, model.node_count());
   for (const auto& [name, probe] : probes.items()) {
@@ -143,10 +143,10 @@ int simulate_free(const Case& value, const SimulateOptions& options) {
                   f[1].get<double>(), f[2].get<double>());
     text += line;
   }
-  const int code = deliver(result, text, options.common, &value);
+  const int code = deliver(result, text, options.common, &definition);
   if (code == kDone && !options.common.out.empty()) {
-    write_frames(options.common.out, "ply", model.scene().mesh, frames, value.mold ? &*value.mold : nullptr,
-                 value.material.thickness);
+    write_frames(options.common.out, "ply", model.scene().mesh, frames,
+                 definition.mold ? &*definition.mold : nullptr, definition.material.thickness);
   }
   return run.summary.status != RunStatus::diverged ? code : kNotFinished;
 }
@@ -159,7 +159,7 @@ std::optional<Schedule> schedule_of(const DrapeProblem& problem, const std::stri
     std::cerr << name << ": is a folder; a schedule is uniform, wave or a file like schedule.json\n";
     return std::nullopt;
   }
-  const RigOptions& rig = *problem.value().grippers;
+  const RigOptions& rig = *problem.definition().grippers;
   ScheduleReading reading = read_schedule(name, rig);
   constexpr double kRounding = 1e-3;  // knots are rounded: a path at the limit may exceed it by as much
   if (reading.errors.empty() && reading.value.largest_velocity() > rig.max_velocity * (1 + kRounding)) {
@@ -188,9 +188,9 @@ std::string score_line(const Drape& drape) {
   return line;
 }
 
-int simulate_drape(Case value, const SimulateOptions& options) {
-  const DrapeProblem problem(std::move(value));
-  print_warnings(map_warnings(problem.value(), problem.mapping()), options.common);
+int simulate_drape(Case definition, const SimulateOptions& options) {
+  const DrapeProblem problem(std::move(definition));
+  print_warnings(map_warnings(problem.definition(), problem.mapping()), options.common);
   const std::optional<Schedule> schedule = schedule_of(problem, options.schedule);
   if (!schedule) return kInputWrong;
   const bool files = !options.common.out.empty();
@@ -204,10 +204,10 @@ int simulate_drape(Case value, const SimulateOptions& options) {
   result["score"] = score_json(drape.score);
   result["terms"] = model.term_names();
   const std::string text = summary_text(drape.run.summary, model.node_count()) + score_line(drape);
-  const int code = deliver(result, text, options.common, &problem.value());
+  const int code = deliver(result, text, options.common, &problem.definition());
   if (code == kDone && files) {
     const std::filesystem::path folder(options.common.out);
-    const Case& resolved = problem.value();
+    const Case& resolved = problem.definition();
     write_frames(folder, "ply", model.scene().mesh, drape.frames, &*resolved.mold,
                  resolved.material.thickness);
     write_mold_vtu(folder / "mold.vtu", *resolved.mold);
@@ -221,27 +221,28 @@ int simulate_drape(Case value, const SimulateOptions& options) {
 }
 
 int run_simulate(const SimulateOptions& options) {
-  std::optional<Case> value = load_case(options.file, options.common, {"material"});
-  if (!value) return kInputWrong;
+  std::optional<Case> definition = load_case(options.file, options.common, {"material"});
+  if (!definition) return kInputWrong;
   if (!options.common.out.empty() &&
       std::filesystem::exists(std::filesystem::path(options.common.out) / "evaluations.jsonl")) {
     std::cerr << options.common.out
               << ": --out holds a plan, whose schedule would be overwritten; choose another folder\n";
     return kInputWrong;
   }
-  if (value->fidelities.count(options.fidelity) == 0) {
+  if (definition->fidelities.count(options.fidelity) == 0) {
     std::cerr << options.file << ": /fidelities: there is no fidelity \"" << options.fidelity
               << "\"; there are";
-    for (const auto& entry : value->fidelities) std::cerr << ' ' << entry.first;
+    for (const auto& entry : definition->fidelities) std::cerr << ' ' << entry.first;
     std::cerr << '\n';
     return kInputWrong;
   }
-  if (!value->grippers && !(value->duration > 0)) {
+  if (!definition->grippers && !(definition->duration > 0)) {
     std::cerr << options.file << ": /duration: a case without grippers needs a duration, e.g. \"2 s\"\n";
     return kInputWrong;
   }
   try {
-    return value->grippers ? simulate_drape(std::move(*value), options) : simulate_free(*value, options);
+    return definition->grippers ? simulate_drape(std::move(*definition), options)
+                                : simulate_free(*definition, options);
   } catch (const std::invalid_argument& error) {
     std::cerr << options.file << ": " << error.what() << '\n';
     return kInputWrong;

@@ -244,22 +244,23 @@ std::optional<Settings> settings_at(const StudyOptions& options) {
 }
 
 /// What is asked for by name must be possible. Errors go to stderr.
-bool parts_fit(const Case& value, const StudyOptions& options) {
+bool parts_fit(const Case& definition, const StudyOptions& options) {
   bool fit = true;
   const auto refuse = [&fit](const std::string& text) {
     std::cerr << "study: " << text << '\n';
     fit = false;
   };
   for (const std::string& part : options.parts) {
-    if (part == "mapping" && !value.mapping) refuse("--part mapping: the case has no section \"mapping\"");
+    if (part == "mapping" && !definition.mapping)
+      refuse("--part mapping: the case has no section \"mapping\"");
     const bool drapes = part == "ranks" || part == "noise" || part == "reach" || part == "search";
-    if (drapes && !value.grippers) refuse("--part " + part + ": the case has no section \"grippers\"");
+    if (drapes && !definition.grippers) refuse("--part " + part + ": the case has no section \"grippers\"");
   }
   if (options.run.empty()) return fit;
   const std::string log = options.run + "/evaluations.jsonl";
   try {
     if (!std::filesystem::exists(log)) throw std::runtime_error(log + ": there is no such file");
-    const EvaluationLog known(log, case_hash(value));
+    const EvaluationLog known(log, case_hash(definition));
   } catch (const std::exception& error) {
     refuse("--run: " + std::string(error.what()));
   }
@@ -267,7 +268,7 @@ bool parts_fit(const Case& value, const StudyOptions& options) {
 }
 
 /// The whole study, once all input is known to be good.
-int study_into(const std::filesystem::path& folder, const Case& value, const StudySubject& subject,
+int study_into(const std::filesystem::path& folder, const Case& definition, const StudySubject& subject,
                const StudyOptions& options) {
   ProgressLine line;
   StudyRunner runner(subject,
@@ -279,7 +280,7 @@ int study_into(const std::filesystem::path& folder, const Case& value, const Stu
   write_study(folder, study);
   CommonOptions common = options.common;
   common.out = folder.string();
-  const int code = deliver(study_json(study), study_text(study), common, &value);
+  const int code = deliver(study_json(study), study_text(study), common, &definition);
   const bool referred =
       study.points.empty() || std::any_of(study.points.begin(), study.points.end(),
                                           [](const StudyPoint& point) { return point.valid(); });
@@ -288,21 +289,21 @@ int study_into(const std::filesystem::path& folder, const Case& value, const Stu
 }
 
 int run_study(const StudyOptions& options) {
-  const std::optional<Case> value = load_case(options.file, options.common, {"material"});
-  if (!value || !parts_fit(*value, options)) return kInputWrong;
+  const std::optional<Case> definition = load_case(options.file, options.common, {"material"});
+  if (!definition || !parts_fit(*definition, options)) return kInputWrong;
   const std::optional<Settings> at = settings_at(options);
   if (!at) return kInputWrong;
   std::vector<std::string> overrides = options.common.overrides;
   if (options.common.seed) overrides.push_back("optimise.seed=" + std::to_string(*options.common.seed));
   const std::filesystem::path folder = options.common.out.empty()
-                                           ? std::filesystem::path("out") / ("study-" + value->name)
+                                           ? std::filesystem::path("out") / ("study-" + definition->name)
                                            : std::filesystem::path(options.common.out);
   try {
     const StudySubject subject(options.file, overrides, *at);
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) throw std::invalid_argument(folder.string() + ": cannot be made: " + error.message());
-    return study_into(folder, *value, subject, options);
+    return study_into(folder, *definition, subject, options);
   } catch (const std::invalid_argument& error) {
     std::cerr << error.what() << '\n';
     return kInputWrong;

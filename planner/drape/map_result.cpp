@@ -8,15 +8,15 @@
 
 namespace drapeplan {
 
-MapResult map_case(const Case& value) {
+MapResult map_case(const Case& definition) {
   constexpr double kDegrees = 180 / std::numbers::pi;
   MapResult result;
-  result.net = map_ply(*value.mold, value.ply, *value.mapping);
-  result.boundary = prescribed_boundary(result.net, *value.mold, value.ply);
+  result.net = map_ply(*definition.mold, definition.ply, *definition.mapping);
+  result.boundary = prescribed_boundary(result.net, *definition.mold, definition.ply);
   result.corners = mapped_corners(result.net);
-  const int grippers = value.grippers ? value.grippers->count() : 0;
+  const int grippers = definition.grippers ? definition.grippers->count() : 0;
   for (int k = 0; k < grippers; ++k) {
-    result.targets.push_back(mapped_point(result.net, *value.mold, value.grippers->place(k)));
+    result.targets.push_back(mapped_point(result.net, *definition.mold, definition.grippers->place(k)));
   }
   const std::vector<double> shear = shear_field(result.net);
   const std::vector<double>& u = result.net.u;
@@ -25,7 +25,7 @@ MapResult map_case(const Case& value) {
   for (size_t j = 0; j + 1 < v.size(); ++j) {
     for (size_t i = 0; i + 1 < u.size(); ++i) {
       const Eigen::Vector2d middle(0.5 * (u[i] + u[i + 1]), 0.5 * (v[j] + v[j + 1]));
-      if (!value.ply.outline.empty() && !contains(value.ply.outline, middle)) continue;
+      if (!definition.ply.outline.empty() && !contains(definition.ply.outline, middle)) continue;
       const double cell = (u[i + 1] - u[i]) * (v[j + 1] - v[j]);
       const double magnitude = kDegrees * std::abs(shear[i + j * (u.size() - 1)]);
       result.max_shear_deg = std::max(result.max_shear_deg, magnitude);
@@ -37,13 +37,13 @@ MapResult map_case(const Case& value) {
   return result;
 }
 
-std::vector<std::string> map_warnings(const Case& value, const MapResult& map) {
+std::vector<std::string> map_warnings(const Case& definition, const MapResult& map) {
   constexpr double kMisplaced = 0.010;  // [m]; tilt and joint offset account for less
   std::vector<std::string> warnings;
   char text[300];
   if (!map.net.converged)
     warnings.emplace_back("the mapping of a cell has not converged: its shear is not exact");
-  const Extent& extent = value.mold->extent();
+  const Extent& extent = definition.mold->extent();
   double beyond = 0;
   for (const Eigen::Vector3d& p : map.boundary) {
     const Eigen::Vector2d xy = p.head<2>();
@@ -55,24 +55,22 @@ std::vector<std::string> map_warnings(const Case& value, const MapResult& map) {
                   1e3 * beyond);
     warnings.emplace_back(text);
   }
-  if (map.max_shear_deg > value.score.locking_angle_deg) {
+  if (map.max_shear_deg > definition.score.locking_angle_deg) {
     std::snprintf(text, sizeof text,
                   "the mapping needs %.1f deg of shear, more than score.locking_angle (%.1f deg)",
-                  map.max_shear_deg, value.score.locking_angle_deg);
+                  map.max_shear_deg, definition.score.locking_angle_deg);
     warnings.emplace_back(text);
   }
-  if (value.grippers && value.grippers->fixed) {
-    const auto [i, j] = *value.grippers->fixed;
-    const int index = (j - 1) * value.grippers->columns + i - 1;
-    const Eigen::Vector2d place =
-        value.ply.position + Eigen::Rotation2Dd(value.ply.angle) * value.grippers->place(index);
+  if (definition.grippers && definition.grippers->fixed) {
+    const int index = definition.grippers->gripper_at(*definition.grippers->fixed);
+    const Eigen::Vector2d place = definition.ply.position + Eigen::Rotation2Dd(definition.ply.angle) *
+                                                                definition.grippers->place(index);
     const double apart = (map.targets[size_t(index)].head<2>() - place).norm();
     if (apart > kMisplaced) {
-      std::snprintf(
-          text, sizeof text,
-          "the fixed gripper [%d, %d] stands %.1f mm beside its target in plan: check ply.position and "
-          "mapping.start",
-          i, j, 1e3 * apart);
+      std::snprintf(text, sizeof text,
+                    "the fixed gripper %s stands %.1f mm beside its target in plan: check ply.position and "
+                    "mapping.start",
+                    definition.grippers->name(index).c_str(), 1e3 * apart);
       warnings.emplace_back(text);
     }
   }

@@ -21,11 +21,11 @@ struct MapResult {
 
 /// Maps the ply of a case that has a mold and a mapping.
 /// @throws std::domain_error where the mold ends or a cell's minimisation fails.
-MapResult map_case(const Case& value);
+MapResult map_case(const Case& definition);
 
 /// What a user should know of a mapping before trusting anything built on it: a ply that sticks out of the
 /// mold's extent, shear beyond the locking angle, a fixed gripper that would have to move in-plane to its
 /// target. One sentence each.
-std::vector<std::string> map_warnings(const Case& value, const MapResult& map);
+std::vector<std::string> map_warnings(const Case& definition, const MapResult& map);
 
 }  // namespace drapeplan

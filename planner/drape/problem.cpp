@@ -27,28 +27,30 @@ bool on_edge(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& uv, Edge edg
 }
 
 /// Joints where their pads touch the mold at the mapped places [m].
-std::vector<Eigen::Vector3d> touching_joints(const Case& value, const std::vector<Eigen::Vector3d>& targets) {
-  const double above = 0.5 * value.material.thickness + value.grippers->joint_offset;
+std::vector<Eigen::Vector3d> touching_joints(const Case& definition,
+                                             const std::vector<Eigen::Vector3d>& targets) {
+  const double above = 0.5 * definition.material.thickness + definition.grippers->joint_offset;
   std::vector<Eigen::Vector3d> joints;
   for (const Eigen::Vector3d& target : targets) {
-    joints.push_back(target + above * value.mold->normal(target.x(), target.y()));
+    joints.push_back(target + above * definition.mold->normal(target.x(), target.y()));
   }
   return joints;
 }
 
-Eigen::Vector2d start_of_joint(const Case& value, int gripper) {
-  return value.ply.position + Eigen::Rotation2Dd(value.ply.angle) * value.grippers->place(gripper);
+Eigen::Vector2d start_of_joint(const Case& definition, int gripper) {
+  return definition.ply.position +
+         Eigen::Rotation2Dd(definition.ply.angle) * definition.grippers->place(gripper);
 }
 
-Mesh mesh_of(const Case& value, double mesh_size) {
+Mesh mesh_of(const Case& definition, double mesh_size) {
   std::vector<double> u,
       v;  // lines through the pads, so that these cover the same piece of ply on every mesh
-  if (value.grippers) {
-    u = column_places(*value.grippers, mesh_size);
-    v = row_places(*value.grippers, mesh_size);
+  if (definition.grippers) {
+    u = column_places(*definition.grippers, mesh_size);
+    v = row_places(*definition.grippers, mesh_size);
   }
-  if (!value.ply.outline.empty()) return outline_mesh(value.ply.outline, mesh_size, u, v);
-  return rectangle_mesh(value.ply.width, value.ply.height, mesh_size, u, v);
+  if (!definition.ply.outline.empty()) return outline_mesh(definition.ply.outline, mesh_size, u, v);
+  return rectangle_mesh(definition.ply.width, definition.ply.height, mesh_size, u, v);
 }
 
 /// Holds all nodes of the mesh's edge on the given piece.
@@ -65,26 +67,26 @@ Grip grip_of(const GripOptions& options, const Mesh& mesh) {
 
 }  // namespace
 
-Scene scene_of(const Case& value, const FemOptions& options) {
+Scene scene_of(const Case& definition, const FemOptions& options) {
   Scene scene;
-  const Ply& ply = value.ply;
-  scene.mesh = mesh_of(value, options.mesh_size);
-  scene.fabric = value.material;
+  const Ply& ply = definition.ply;
+  scene.mesh = mesh_of(definition, options.mesh_size);
+  scene.fabric = definition.material;
   scene.options = options;
   scene.position = ply.position;
   scene.angle = ply.angle;
-  scene.start_height = value.start_height;
-  scene.start = value.start;
-  scene.gravity = value.gravity;
-  scene.damping = value.damping;
-  scene.rest = value.rest;
-  scene.mold = value.mold;
-  scene.friction = value.friction;
-  scene.rig = value.grippers;
-  for (const GripOptions& grip : value.grips) scene.grips.push_back(grip_of(grip, scene.mesh));
+  scene.start_height = definition.start_height;
+  scene.start = definition.start;
+  scene.gravity = definition.gravity;
+  scene.damping = definition.damping;
+  scene.rest = definition.rest;
+  scene.mold = definition.mold;
+  scene.friction = definition.friction;
+  scene.rig = definition.grippers;
+  for (const GripOptions& grip : definition.grips) scene.grips.push_back(grip_of(grip, scene.mesh));
   const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
   for (int n = 0; n < scene.mesh.node_count(); ++n) {
-    for (const Edge edge : value.clamped) {
+    for (const Edge edge : definition.clamped) {
       if (!on_edge(box, scene.mesh.rest[size_t(n)], edge)) continue;
       scene.clamped.push_back(n);
       break;
@@ -93,20 +95,19 @@ Scene scene_of(const Case& value, const FemOptions& options) {
   return scene;
 }
 
-ReachProblem reach_problem_of(const Case& value, const std::vector<Eigen::Vector3d>& targets) {
-  const RigOptions& rig = *value.grippers;
-  ReachProblem problem{rig, *value.mold, targets, value.ply.position};
+ReachProblem reach_problem_of(const Case& definition, const std::vector<Eigen::Vector3d>& targets) {
+  const RigOptions& rig = *definition.grippers;
+  ReachProblem problem{rig, *definition.mold, targets, definition.ply.position};
   // Joints stand off from the ply's mid-surface, which lies half a ply above the mold.
-  problem.ply_thickness = 0.5 * value.material.thickness;
+  problem.ply_thickness = 0.5 * definition.material.thickness;
   if (rig.fixed) {
-    const int index = ((*rig.fixed)[1] - 1) * rig.columns + (*rig.fixed)[0] - 1;
-    problem.fixed_place = start_of_joint(value, index);
+    problem.fixed_place = start_of_joint(definition, rig.gripper_at(*rig.fixed));
   }
   return problem;
 }
 
-DrapeProblem::DrapeProblem(Case value)
-    : case_(std::move(value)),
+DrapeProblem::DrapeProblem(Case definition)
+    : case_(std::move(definition)),
       map_(map_case(case_)),
       reach_problem_(reach_problem_of(case_, map_.targets)),
       reach_(std::make_unique<Lazy<ReachResult>>()) {
@@ -147,7 +148,7 @@ Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, i
   request.pause = part.pause;
   if (frames > 0) request.observe = [&drape](const Snapshot& frame) { drape.frames.push_back(frame); };
   drape.run = simulate(model, request);
-  drape.gap = gaps(drape.run.final, *case_.mold, case_.material.thickness);
+  drape.gap = nodal_gaps(drape.run.final, *case_.mold, case_.material.thickness);
   if (drape.run.summary.status != RunStatus::done) {
     drape.score = failed_score(drape.run.summary.message);
     return drape;

@@ -23,10 +23,10 @@ inline constexpr const char* kReport = "report";
 
 /// The FE scene of a case at a fidelity: sections that are absent add nothing.
 /// @throws std::invalid_argument if the scene cannot be built.
-Scene scene_of(const Case& value, const FemOptions& options);
+Scene scene_of(const Case& definition, const FemOptions& options);
 
 /// The reach problem of a case with grippers. @param targets  mapped places of the pads [m].
-ReachProblem reach_problem_of(const Case& value, const std::vector<Eigen::Vector3d>& targets);
+ReachProblem reach_problem_of(const Case& definition, const std::vector<Eigen::Vector3d>& targets);
 
 /// One simulated drape with its score.
 struct Drape {
@@ -48,9 +48,9 @@ class DrapeProblem {
   /// Maps the ply; where the schedule aims at reachable places, also solves the reach problem.
   /// @param value  needs mold, mapping and grippers.
   /// @throws std::domain_error if the ply cannot be mapped, or not be reached where the schedule needs it.
-  explicit DrapeProblem(Case value);
+  explicit DrapeProblem(Case definition);
 
-  [[nodiscard]] const Case& value() const { return case_; }
+  [[nodiscard]] const Case& definition() const { return case_; }
   [[nodiscard]] const MapResult& mapping() const { return map_; }
   [[nodiscard]] const ReachProblem& reach_problem() const { return reach_problem_; }
   [[nodiscard]] const ReachResult& reach() const;

@@ -18,10 +18,6 @@ using Json = nlohmann::ordered_json;
 /// Samples closer than this are one: far below any controller's cycle, far above round-off.
 constexpr double kSameTime = 1e-9;  // [s]
 
-std::array<int, 2> name_of(size_t gripper, const RigOptions& rig) {
-  return {int(gripper) % rig.columns + 1, int(gripper) / rig.columns + 1};
-}
-
 void check_fits(const Schedule& schedule, const RigOptions& rig) {
   const auto empty = [](const auto& path) { return path.empty(); };
   const auto check = [&](const auto& paths, size_t count, const std::string& kind) {
@@ -131,8 +127,7 @@ class Reader {
   void report_missing() {
     std::string missing;
     for (size_t g = 0; g < reading_.value.paths.size(); ++g) {
-      const auto [i, j] = name_of(g, rig_);
-      if (!seen_.contains(int(g))) missing += " [" + std::to_string(i) + ", " + std::to_string(j) + "]";
+      if (!seen_.contains(int(g))) missing += ' ' + rig_.name(int(g));
     }
     if (!missing.empty()) error("/grippers", "no path for gripper" + missing);
   }
@@ -188,7 +183,7 @@ class Reader {
       error(path, name.dump() + allowed);
       return -1;
     }
-    const int gripper = (name[1].get<int>() - 1) * rig_.columns + name[0].get<int>() - 1;
+    const int gripper = rig_.gripper_at({name[0].get<int>(), name[1].get<int>()});
     if (!seen_.insert(gripper).second) error(path, name.dump() + ": this gripper has a path already");
     return gripper;
   }
@@ -282,8 +277,7 @@ void write_schedule(const std::filesystem::path& file, const Schedule& schedule,
   std::string text = "{\n  \"format\": \"" + std::string(kScheduleFormat) +
                      "\",\n  \"blend_time\": " + json_number(schedule.blend_time) + ",\n  \"grippers\": [\n";
   for (size_t g = 0; g < schedule.paths.size(); ++g) {
-    const auto [i, j] = name_of(g, rig);
-    text += "    {\"gripper\": [" + std::to_string(i) + ", " + std::to_string(j) + "], \"knots\": [";
+    text += "    {\"gripper\": " + rig.name(int(g)) + ", \"knots\": [";
     for (size_t k = 0; k < schedule.paths[g].size(); ++k) {
       const Knot& knot = schedule.paths[g][k];
       text += std::string(k > 0 ? ", " : "") + "{\"time\": " + json_number(knot.time) +
@@ -308,7 +302,7 @@ void write_schedule_csv(const std::filesystem::path& file, const Schedule& sched
   std::string text = std::string("gripper_i,gripper_j,time_s,z_m,vz_m_per_s") +
                      (plane ? ",x_m,y_m,vx_m_per_s,vy_m_per_s" : "") + (suction ? ",suction" : "") + "\n";
   for (size_t g = 0; g < schedule.paths.size(); ++g) {
-    const auto [i, j] = name_of(g, rig);
+    const auto [i, j] = rig.indices(int(g));
     const std::string name = std::to_string(i) + "," + std::to_string(j) + ",";
     for (const double time : sample_times(schedule, g, rate)) {
       const Command command = schedule.command(int(g), time);

@@ -182,7 +182,7 @@ std::optional<std::string> not_finite(const Snapshot& end, const RunExtremes& ru
 /// Gap parts of the score; false where the mold is not defined below a node (`node` says which).
 bool score_gap(const Mesh& mesh, const Snapshot& end, const Mold& mold, double thickness,
                const ScoreOptions& options, Score& score, size_t& node) {
-  const std::vector<double> gaps = gaps(end, mold, thickness);
+  const std::vector<double> gaps = nodal_gaps(end, mold, thickness);
   const std::vector<double> areas = nodal_areas(mesh);
   const std::vector<bool> bridges = bridging(mesh, end, mold);
   double area = 0, integral = 0;
@@ -199,7 +199,7 @@ bool score_gap(const Mesh& mesh, const Snapshot& end, const Mold& mold, double t
 
 }  // namespace
 
-std::vector<double> gaps(const Snapshot& end, const Mold& mold, double thickness) {
+std::vector<double> nodal_gaps(const Snapshot& end, const Mold& mold, double thickness) {
   std::vector<double> gaps;
   gaps.reserve(end.position.size());
   for (const Eigen::Vector3d& place : end.position) gaps.push_back(gap(mold, place, thickness));

@@ -77,8 +77,7 @@ ReachNlp::ReachNlp(const ReachProblem& problem, ReachGoal goal, bool free_links)
   if (free_links_) length_ = variables_++;
 
   if (problem.rig.fixed) {
-    const auto [i, j] = *problem.rig.fixed;
-    fixed_ = (j - 1) * problem.rig.columns + (i - 1);
+    fixed_ = problem.rig.gripper_at(*problem.rig.fixed);
   }
   fixed_row_ = int(links_.size());
   tilt_row_ = fixed_row_ + (fixed_ >= 0 ? 2 : 0);

@@ -33,13 +33,6 @@ struct Best {
   int solved = 0, agreed = 0;
 };
 
-/// "(i, j)", counted from 1.
-std::string gripper_name(const RigOptions& rig, int index) {
-  char text[32];
-  std::snprintf(text, sizeof text, "(%d, %d)", index % rig.columns + 1, index / rig.columns + 1);
-  return text;
-}
-
 /// Why the problem cannot be posed; empty if it can.
 std::string check_reach(const ReachProblem& problem) {
   const RigOptions& rig = problem.rig;
@@ -59,7 +52,7 @@ std::string check_reach(const ReachProblem& problem) {
   for (int k = 0; k < rig.count(); ++k) {
     const Eigen::Vector3d& target = problem.targets[size_t(k)];
     if (target.allFinite() && problem.mold.normal(target.x(), target.y()).allFinite()) continue;
-    return "the mold is not defined at the target of gripper " + gripper_name(rig, k);
+    return "the mold is not defined at the target of gripper " + rig.name(k);
   }
   return "";
 }
@@ -291,7 +284,7 @@ std::string explain_reach(const ReachProblem& problem, const ReachResult& result
   return "With its pads on the mold the rig cannot bring every one closer to its target than " +
          millimetres(result.floor_max) + " (largest distance), nor below " + millimetres(result.floor_rms) +
          " r.m.s., whatever the schedule. In the best r.m.s. position gripper " +
-         gripper_name(problem.rig, int(worst - result.per_gripper.begin())) + " is farthest off, by " +
+         problem.rig.name(int(worst - result.per_gripper.begin())) + " is farthest off, by " +
          millimetres(*worst) + "." + explain_causes(problem, result) + explain_spread(result);
 }
 

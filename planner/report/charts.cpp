@@ -202,10 +202,6 @@ std::vector<Row> sequence(const Schedule& schedule) {
   return rows;
 }
 
-std::string gripper_name(int gripper, const RigOptions& rig) {
-  return std::to_string(gripper % rig.columns + 1) + "," + std::to_string(gripper / rig.columns + 1);
-}
-
 /// Share of a gripper's arrival between the first and the last one: its colour.
 class ArrivalScale {
  public:
@@ -229,7 +225,7 @@ void draw_bars(Svg& svg, const std::vector<Row>& rows, const RigOptions& rig, co
   for (size_t r = 0; r < rows.size(); ++r) {
     const Row& row = rows[r];
     const double y = top + double(r) * pitch;
-    svg.text({x.start - 10, y + 0.5 * pitch + 4}, gripper_name(row.gripper, rig),
+    svg.text({x.start - 10, y + 0.5 * pitch + 4}, rig.name(row.gripper),
              {.size = 11, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
     for (size_t k = 0; k < row.strokes.size(); ++k) {
       const Stroke& stroke = row.strokes[k];
@@ -304,7 +300,7 @@ Chart height_chart(const Schedule& schedule, const RigOptions& rig, const std::s
   constexpr int kSamples = 200;
   Chart chart{title, "time [s]", "joint height [mm]", {}};
   for (size_t g = 0; g < schedule.paths.size(); ++g) {
-    ChartSeries series{schedule.paths.size() <= 6 ? gripper_name(int(g), rig) : "", {}};
+    ChartSeries series{schedule.paths.size() <= 6 ? rig.name(int(g)) : "", {}};
     for (int k = 0; k <= kSamples; ++k) {
       const double time = schedule.duration() * k / kSamples;
       series.points.emplace_back(time, 1000 * schedule.command(int(g), time).z);

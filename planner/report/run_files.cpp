@@ -36,7 +36,7 @@ std::string short_score(const Score& score) {
 /// Published rows first, then the baselines, then the optimum.
 std::vector<ReportRow> rows_of(const DrapeProblem& problem, const PlanResult& result) {
   std::vector<ReportRow> rows;
-  for (const Reference& reference : problem.value().references) {
+  for (const Reference& reference : problem.definition().references) {
     Score score;
     for_each_part(score, [](const char*, double& part) { part = kNaN; });
     score.valid = true;
@@ -70,7 +70,7 @@ Chart history_chart(const StagedResult& search) {
 
 std::vector<std::string> notes_of(const DrapeProblem& problem) {
   std::vector<std::string> notes;
-  const MaterialNotes& material = problem.value().material_notes;
+  const MaterialNotes& material = problem.definition().material_notes;
   for (const std::string* source :
        {&material.source, &material.tension_source, &material.compression_source, &material.shear_source}) {
     if (!source->empty()) notes.push_back(*source);
@@ -89,7 +89,7 @@ std::string terms_line(const Model& model) {
 DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
                        const std::string& title) {
   const Mesh& mesh = problem.model(fidelity).scene().mesh;
-  const double thickness = problem.value().material.thickness;
+  const double thickness = problem.definition().material.thickness;
   DrapePanel panel{.title = title,
                    .subtitle = short_score(drape.score),
                    .mesh = mesh,
@@ -97,7 +97,7 @@ DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const st
                    .gap = drape.gap,
                    .boundary = problem.mapping().boundary,
                    .pads = drape.run.final.pad,
-                   .pad_radius = problem.value().grippers->pad_radius,
+                   .pad_radius = problem.definition().grippers->pad_radius,
                    .largest_offset = std::nullopt};
   if (drape.score.valid) {
     const BoundaryOffset offset =
@@ -112,7 +112,7 @@ void write_frames(const std::filesystem::path& folder, const std::string& name, 
   std::vector<PvdEntry> entries;
   for (size_t k = 0; k < frames.size(); ++k) {
     const std::string file = format("%s_%03zu.vtu", name.c_str(), k);
-    const std::vector<double> gaps = mold ? gaps(frames[k], *mold, thickness) : std::vector<double>{};
+    const std::vector<double> gaps = mold ? nodal_gaps(frames[k], *mold, thickness) : std::vector<double>{};
     write_vtu(folder / file, mesh, frames[k], gaps);
     entries.push_back({frames[k].time, file});
   }
@@ -120,7 +120,7 @@ void write_frames(const std::filesystem::path& folder, const std::string& name, 
 }
 
 void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result) {
-  const RigOptions& rig = *problem.value().grippers;
+  const RigOptions& rig = *problem.definition().grippers;
   const StagedResult& search = result.search;
   write_schedule(folder / "schedule.json", search.best.schedule, rig);
   write_schedule_csv(folder / "schedule.csv", search.best.schedule, rig);
@@ -132,20 +132,20 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
       {{"uniform", &result.uniform}, {"wave", &result.wave}, {"optimised", &result.best}}};
   std::vector<DrapePanel> panels;
   for (const auto& [name, drape] : drapes) {
-    write_frames(folder, name, mesh, drape->frames, &*problem.value().mold,
-                 problem.value().material.thickness);
+    write_frames(folder, name, mesh, drape->frames, &*problem.definition().mold,
+                 problem.definition().material.thickness);
     panels.push_back(drape_panel(problem, *drape, kReport, name));
   }
-  write_mold_vtu(folder / "mold.vtu", *problem.value().mold);
+  write_mold_vtu(folder / "mold.vtu", *problem.definition().mold);
 
   PlanReport report;
-  report.title = problem.value().name;
-  report.description = problem.value().description;
+  report.title = problem.definition().name;
+  report.description = problem.definition().description;
   report.verdict = search.message;
   report.reach = explain_reach(problem.reach_problem(), problem.reach());
   report.rows = rows_of(problem, result);
   report.notes = notes_of(problem);
-  const std::string drape = drape_picture(panels, problem.value().mold->extent());
+  const std::string drape = drape_picture(panels, problem.definition().mold->extent());
   const std::string sequence = schedule_picture(search.best.schedule, rig, "Optimised sequence");
   write_text(folder / "drape.svg", drape);
   write_text(folder / "sequence.svg", sequence);

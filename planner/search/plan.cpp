@@ -34,8 +34,8 @@ class ReportedDrapes {
 
 }  // namespace
 
-std::uint64_t case_hash(const Case& value) {
-  nlohmann::json relevant = resolved_case(value);
+std::uint64_t case_hash(const Case& definition) {
+  nlohmann::json relevant = resolved_case(definition);
   // Words, published results and budgets change no evaluation: a search may go on with other ones.
   for (const char* key : {"description", "references", "optimise"}) relevant.erase(key);
   Fnv1a hash;
@@ -43,9 +43,9 @@ std::uint64_t case_hash(const Case& value) {
   return hash.value();
 }
 
-std::array<std::string, 3> plan_fidelities(const Case& value) {
-  const auto fidelity_or_report = [&value](const char* name) {
-    return value.fidelities.count(name) > 0 ? std::string(name) : std::string(kReport);
+std::array<std::string, 3> plan_fidelities(const Case& definition) {
+  const auto fidelity_or_report = [&definition](const char* name) {
+    return definition.fidelities.count(name) > 0 ? std::string(name) : std::string(kReport);
   };
   return {fidelity_or_report("screen"), fidelity_or_report("search"), kReport};
 }
@@ -56,21 +56,21 @@ PlanResult plan(const DrapeProblem& problem, const PlanOptions& options,
   std::filesystem::create_directories(options.out);
   const std::filesystem::path file = options.out / "evaluations.jsonl";
   if (!options.resume) std::filesystem::remove(file);
-  EvaluationLog log(file.string(), case_hash(problem.value()));
+  EvaluationLog log(file.string(), case_hash(problem.definition()));
 
   ReportedDrapes reported;
   const Evaluate evaluate = [&](const Schedule& schedule, const std::string& fidelity) {
     const bool report = fidelity == kReport;
     Drape drape = problem.run(schedule, fidelity, report ? kFrames : 0);
     Outcome outcome{
-        .score = drape.score, .report = drape.run.summary, .wall_seconds = drape.run.summary.wall_seconds};
+        .score = drape.score, .summary = drape.run.summary, .wall_seconds = drape.run.summary.wall_seconds};
     if (report) reported.keep(schedule_hash(schedule), std::move(drape));
     return outcome;
   };
   StagedOptions staged;
-  staged.optimise = problem.value().optimise;
+  staged.optimise = problem.definition().optimise;
   staged.threads = options.threads;
-  const auto fidelities = plan_fidelities(problem.value());
+  const auto fidelities = plan_fidelities(problem.definition());
   staged.wave_fidelity = fidelities[0];
   staged.gripper_fidelity = fidelities[1];
 

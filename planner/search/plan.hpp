@@ -26,7 +26,7 @@ struct PlanResult {
 };
 
 /// Fidelities that a plan of the case runs: of the wave's search, of the grippers' search, of reports.
-std::array<std::string, 3> plan_fidelities(const Case& value);
+std::array<std::string, 3> plan_fidelities(const Case& definition);
 
 /// Searches for the best schedule of the problem. The result depends on the case only: not on threads, nor on
 /// what was resumed. Evaluations are appended to `out`/evaluations.jsonl as they end.
@@ -35,6 +35,6 @@ PlanResult plan(const DrapeProblem& problem, const PlanOptions& options,
                 const std::function<void(const Progress&)>& progress);
 
 /// Hash of what an evaluation depends on: the resolved case without words, references and budgets.
-std::uint64_t case_hash(const Case& value);
+std::uint64_t case_hash(const Case& definition);
 
 }  // namespace drapeplan

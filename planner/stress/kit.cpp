@@ -158,17 +158,17 @@ StressSetup from_case(const std::string& text, const std::vector<std::string>& o
   for (const InputError& error : reading.errors)
     errors += (errors.empty() ? "" : "; ") + error.path + ": " + error.message;
   if (!errors.empty()) throw std::invalid_argument(errors);
-  const Case& value = reading.value;
+  const Case& definition = reading.definition;
   StressSetup setup;
-  if (!value.grippers) {
-    setup.scene = scene_of(value, value.fidelities.at(kReport));
-    setup.duration = value.duration;
+  if (!definition.grippers) {
+    setup.scene = scene_of(definition, definition.fidelities.at(kReport));
+    setup.duration = definition.duration;
     return setup;
   }
-  const DrapeProblem problem(value);
+  const DrapeProblem problem(definition);
   setup.scene = problem.model(kReport).scene();
   setup.schedule = to_schedule(problem.frame(), uniform_strokes(problem.frame()));
-  setup.warnings = map_warnings(value, problem.mapping());
+  setup.warnings = map_warnings(definition, problem.mapping());
   return setup;
 }
 

@@ -33,10 +33,10 @@ double timed(int repeats, const Work& work) {
 }
 
 /// Places of the compared points on the mold.
-std::vector<Vector3d> mapped_grid(const Case& value, const MapResult& map) {
+std::vector<Vector3d> mapped_grid(const Case& definition, const MapResult& map) {
   std::vector<Vector3d> places;
-  for (const Eigen::Vector2d& point : compared_points(value.ply))
-    places.push_back(mapped_point(map.net, *value.mold, point));
+  for (const Eigen::Vector2d& point : compared_points(definition.ply))
+    places.push_back(mapped_point(map.net, *definition.mold, point));
   return places;
 }
 
@@ -73,11 +73,11 @@ std::vector<MappingRow> study_mapping(const StudySubject& subject, int repeats) 
        {0.125, 0.25, 0.5, 1.0, 2.0, 4.0}) {  // the finest is what the others are compared with
     MappingRow row;
     row.cell_size = factor * subject.base().mapping->cell_size;
-    Case value = subject.base();
-    value.mapping->cell_size = row.cell_size;
+    Case definition = subject.base();
+    definition.mapping->cell_size = row.cell_size;
     MapResult map;
-    row.wall_seconds = timed(repeats, [&] { map = map_case(value); });
-    const std::vector<Vector3d> grid = mapped_grid(value, map);
+    row.wall_seconds = timed(repeats, [&] { map = map_case(definition); });
+    const std::vector<Vector3d> grid = mapped_grid(definition, map);
     if (rows.empty()) targets = map.targets, places = grid, shear = map.max_shear_deg;
     row.targets = largest_distance(map.targets, targets);
     row.places = rms_distance(grid, places);

@@ -136,26 +136,26 @@ StudyRun run_drape(const DrapeProblem& problem, const Schedule& schedule,
   return run;
 }
 
-StudyRun run_free(const Case& value) {
-  const Model model(scene_of(value, value.fidelities.at(kReport)));
+StudyRun run_free(const Case& definition) {
+  const Model model(scene_of(definition, definition.fidelities.at(kReport)));
   const Mesh& mesh = model.scene().mesh;
   RunRequest request;
-  request.duration = value.duration;
+  request.duration = definition.duration;
   const double clock = thread_seconds();
   const RunResult result = simulate(model, request);
   StudyRun run;
   run.cpu_seconds = thread_seconds() - clock;
   add_report(result.summary, mesh.element_count(), run);
   if (!run.valid) return run;
-  const Snapshot start = take_snapshot(model, model.flat_state(value.start_height), RigDrive{});
-  for (const Probe& probe : value.probes) {
+  const Snapshot start = take_snapshot(model, model.flat_state(definition.start_height), RigDrive{});
+  for (const Probe& probe : definition.probes) {
     const std::optional<Foot> foot = foot_of(mesh, probe.place);
     if (foot)
       run.figures[probe.name] = (place_of(mesh, *foot, result.final) - place_of(mesh, *foot, start)).norm();
   }
   for (size_t k = 0; k < model.scene().grips.size(); ++k)
     run.figures[model.scene().grips[k].name + " force"] = result.final.grip_force[k].norm();
-  add_fields(mesh, feet(mesh, value.ply), result.final, run);
+  add_fields(mesh, feet(mesh, definition.ply), result.final, run);
   return run;
 }
 
@@ -189,7 +189,7 @@ StudySubject::StudySubject(std::string file, std::vector<std::string> overrides,
 }
 
 Case StudySubject::whole() const {
-  return read_case(file_, overrides_).value;  // read without errors before, by the constructor
+  return read_case(file_, overrides_).definition;  // read without errors before, by the constructor
 }
 
 std::vector<std::string> StudySubject::fidelities() const {
@@ -223,16 +223,16 @@ Case StudySubject::with(const Settings& settings) const {
     for (const auto& [path, value] : *changes) overrides.push_back(path + "=" + value);
   }
   CaseReading reading = read_case(file_, overrides);
-  const Case& value = reading.value;
-  if (reading.errors.empty() && !(value.material.thickness > 0))
+  const Case& definition = reading.definition;
+  if (reading.errors.empty() && !(definition.material.thickness > 0))
     reading.errors.push_back({file_, 0, "", "a study needs the section \"material\", which is absent"});
-  if (reading.errors.empty() && !value.grippers && !(value.duration > 0))
+  if (reading.errors.empty() && !definition.grippers && !(definition.duration > 0))
     reading.errors.push_back(
         {file_, 0, "/duration", "a study of a case without grippers needs a duration above 0"});
-  if (reading.errors.empty() && !value.grippers && value.probes.empty() && value.grips.empty())
+  if (reading.errors.empty() && !definition.grippers && definition.probes.empty() && definition.grips.empty())
     reading.errors.push_back(
         {file_, 0, "/probes", "a study of a case without grippers needs probes or grips to compare"});
-  if (reading.errors.empty()) return std::move(reading.value);
+  if (reading.errors.empty()) return std::move(reading.definition);
   std::string text;
   for (const InputError& error : reading.errors) text += (text.empty() ? "" : "\n") + error.text();
   throw std::invalid_argument(text);
@@ -274,10 +274,10 @@ std::vector<StudyRun> StudySubject::run(const Settings& settings,
                                         const std::vector<Schedule>& schedules) const {
   std::vector<StudyRun> runs;
   try {
-    const Case value = with(settings);
-    if (!drapes()) return {run_free(value)};
-    const DrapeProblem problem(value);
-    const std::vector<std::optional<Foot>> where = feet(problem.model(kReport).scene().mesh, value.ply);
+    const Case definition = with(settings);
+    if (!drapes()) return {run_free(definition)};
+    const DrapeProblem problem(definition);
+    const std::vector<std::optional<Foot>> where = feet(problem.model(kReport).scene().mesh, definition.ply);
     for (const Schedule& schedule : schedules) runs.push_back(run_drape(problem, schedule, where));
   } catch (const std::exception& error) {
     StudyRun failed;

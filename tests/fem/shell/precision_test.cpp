@@ -201,7 +201,7 @@ TEST(SingleDrape, ClosesItsBooksAndEndsWithTheScoresOfDouble) {
     CaseReading read = read_case(std::filesystem::path(DRAPEPLAN_SOURCE_DIR) / "cases/flexdraper-quick.json",
                                  {std::string("fem.precision=") + (single ? "single" : "double")});
     ASSERT_TRUE(read.errors.empty());
-    const DrapeProblem problem(std::move(read.value));
+    const DrapeProblem problem(std::move(read.definition));
     drape[single ? 1 : 0] =
         problem.run(to_schedule(problem.frame(), uniform_strokes(problem.frame())), "summary");
   }

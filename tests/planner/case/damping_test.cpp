@@ -30,7 +30,7 @@ CaseReading strip_case(const json& damping, const json& material = {}) {
 double alpha_of(const json& damping, const json& material = {}) {
   const CaseReading reading = strip_case(damping, material);
   for (const InputError& error : reading.errors) ADD_FAILURE() << error.text();
-  return reading.value.damping.value_or(NAN);
+  return reading.definition.damping.value_or(NAN);
 }
 
 /// t = 0.3 mm, m = 0.314 kg/m^2, L = 150 mm.

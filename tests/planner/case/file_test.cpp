@@ -49,7 +49,7 @@ std::string all_text(const std::vector<InputError>& errors) {
 Case good_case(const fs::path& file, const std::vector<std::string>& overrides = {}) {
   CaseReading reading = read_case(file, overrides);
   EXPECT_TRUE(reading.errors.empty()) << all_text(reading.errors);
-  return std::move(reading.value);
+  return std::move(reading.definition);
 }
 
 std::vector<fs::path> files_in(const fs::path& folder) {
@@ -94,7 +94,7 @@ TEST(CaseFile, TheEchoKeepsEveryBit) {
 }
 
 TEST(CaseFile, TheFlexdraperCaseHoldsWhatThePaperSays) {
-  const Case value = good_case(kCases / "flexdraper-5x5.json");
+  const Case definition = good_case(kCases / "flexdraper-5x5.json");
   EXPECT_EQ(value.material.thickness, 0.3e-3);
   EXPECT_EQ(value.material.areal_density, 0.314);
   EXPECT_NEAR(value.material.tension.slowest()(0.0067), 66.7e6, 1);
@@ -114,7 +114,7 @@ TEST(CaseFile, TheFlexdraperCaseHoldsWhatThePaperSays) {
 }
 
 TEST(CaseFile, AnAbsentSectionIsAbsentPhysics) {
-  const Case value = good_case(kCases / "sphere-mapping.json");
+  const Case definition = good_case(kCases / "sphere-mapping.json");
   EXPECT_FALSE(value.grippers || value.gravity || value.damping || value.friction);
   EXPECT_EQ(value.material.thickness, 0);
   const json resolved = resolved_case(value);
@@ -124,12 +124,13 @@ TEST(CaseFile, AnAbsentSectionIsAbsentPhysics) {
 }
 
 TEST(CaseFile, MappingStartsUnderThePlyUnlessToldOtherwise) {
-  const Case value = good_case(kCases / "flexdraper-5x5.json", {"mapping.start=null"});
+  const Case definition = good_case(kCases / "flexdraper-5x5.json", {"mapping.start=null"});
   EXPECT_EQ(value.mapping->start, value.ply.position);
 }
 
 TEST(CaseFile, OverridesReachReferencedFiles) {
-  const Case value = good_case(kCases / "cantilever-150.json", {"material.thickness=0.4 mm", "gravity=null"});
+  const Case definition =
+      good_case(kCases / "cantilever-150.json", {"material.thickness=0.4 mm", "gravity=null"});
   EXPECT_EQ(value.material.thickness, 0.4e-3);
   EXPECT_FALSE(value.gravity);
   const Case linear = good_case(kCases / "elastica.json", {"material.modulus=\"0.7 GPa\""});
@@ -140,15 +141,16 @@ TEST(CaseFile, OverridesReachReferencedFiles) {
 }
 
 TEST(CaseFile, FemIsTheReportingFidelityAndTheStartOfTheOthers) {
-  const Case value = good_case(kCases / "flexdraper-5x5.json", {"fem.mesh_size=12 mm", "fem.section_points=5",
-                                                                "fidelities.screen.mesh_size=20 mm"});
+  const Case definition =
+      good_case(kCases / "flexdraper-5x5.json",
+                {"fem.mesh_size=12 mm", "fem.section_points=5", "fidelities.screen.mesh_size=20 mm"});
   EXPECT_EQ(value.fidelities.at("report").mesh_size, 0.012);
   EXPECT_EQ(value.fidelities.at("screen").mesh_size, 0.020);
   EXPECT_EQ(value.fidelities.at("screen").section_points, 5);
 }
 
 TEST(CaseFile, FidelitiesMayHaveAnyName) {
-  Case value = good_case(kCases / "flexdraper-5x5.json");
+  Case definition = good_case(kCases / "flexdraper-5x5.json");
   value.fidelities["~2/a.b \xc3\xa9"].mesh_size = 0.02;
   value.material.shear.curves[0].stress[1] = 1e-310;  // denormal: text must not refuse it
   const ScratchFile echo(resolved_case(value).dump());
@@ -158,8 +160,9 @@ TEST(CaseFile, FidelitiesMayHaveAnyName) {
 
 TEST(CaseFile, APolynomialMayBeStatedInMillimetres) {
   // z/mm = 0.01 (x/mm)^2 is z = 10/m x^2.
-  const Case value = good_case(kCases / "flexdraper-5x5.json",
-                               {"mold.unit=1 mm", "mold.terms=[{\"x\":2,\"y\":0,\"coefficient\":0.01}]"});
+  const Case definition =
+      good_case(kCases / "flexdraper-5x5.json",
+                {"mold.unit=1 mm", "mold.terms=[{\"x\":2,\"y\":0,\"coefficient\":0.01}]"});
   EXPECT_NEAR(value.mold->height(0.1, 0.3), 0.1, 1e-15);
 }
 
@@ -249,7 +252,7 @@ TEST(CaseFile, MutatedBytesNeverCrashTheReader) {
     const ScratchFile file(text);
     const CaseReading reading = read_case(file.path);
     refused += reading.errors.empty() ? 0 : 1;
-    if (reading.errors.empty()) resolved_case(reading.value).dump();
+    if (reading.errors.empty()) resolved_case(reading.definition).dump();
     for (const InputError& error : reading.errors) EXPECT_FALSE(error.text().empty());
   }
   EXPECT_GT(refused, rounds / 2);

@@ -13,7 +13,7 @@ namespace {
 Case quick_case(const std::vector<std::string>& overrides = {}) {
   CaseReading reading = read_case(DRAPEPLAN_SOURCE_DIR "/cases/flexdraper-quick.json", overrides);
   EXPECT_TRUE(reading.errors.empty());
-  return std::move(reading.value);
+  return std::move(reading.definition);
 }
 
 TEST(DrapeProblem, MakesAModelOnceForAllThreads) {
@@ -34,13 +34,13 @@ TEST(DrapeProblem, AsksForModelsThatCannotBeBuiltOnlyWhenTheyAreUsed) {
   const DrapeProblem problem(quick_case({coarse}));
   EXPECT_THROW(static_cast<void>(problem.model("coarse")), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(problem.model("coarse")), std::invalid_argument);  // asked again, too
-  for (const std::string& fidelity : plan_fidelities(problem.value()))
+  for (const std::string& fidelity : plan_fidelities(problem.definition()))
     EXPECT_GT(problem.model(fidelity).node_count(), 0) << fidelity;
 }
 
 TEST(DrapeProblem, SolvesTheReachProblemOnDemandAndAimsAtItOnlyIfTold) {
   const DrapeProblem mapped(quick_case());
-  const ReachResult expected = solve_reach(mapped.reach_problem(), 2, mapped.value().optimise.seed);
+  const ReachResult expected = solve_reach(mapped.reach_problem(), 2, mapped.definition().optimise.seed);
   EXPECT_EQ(mapped.reach().floor_max, expected.floor_max);
   EXPECT_EQ(&mapped.reach(), &mapped.reach());
   const DrapeProblem reachable(quick_case({"schedule.aim=reachable"}));

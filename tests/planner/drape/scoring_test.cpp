@@ -71,12 +71,12 @@ TEST(Scoring, GapIsMeasuredAlongTheNormalOfAnInclinedPlane) {
   const Snapshot end = snapshot(mesh, [&](double u, double v) -> Vector3d {
     return mold.point(u, v) + normal * (gap + 0.5 * kThickness);
   });
-  for (const double gap : gaps(end, mold, kThickness)) EXPECT_LE(std::abs(gap - gap), 1e-12);
+  for (const double gap : nodal_gaps(end, mold, kThickness)) EXPECT_LE(std::abs(gap - gap), 1e-12);
 }
 
 TEST(Scoring, PenetrationCountsAsContact) {
   const Mesh mesh = rectangle_mesh(kSide, kSide, 0.05);
-  for (const double gap : gaps(flat(mesh, {0, 0, -0.001}), Mold(PlaneShape{0}, kExtent), kThickness)) {
+  for (const double gap : nodal_gaps(flat(mesh, {0, 0, -0.001}), Mold(PlaneShape{0}, kExtent), kThickness)) {
     EXPECT_EQ(gap, 0.0);
   }
 }

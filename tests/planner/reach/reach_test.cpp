@@ -267,7 +267,7 @@ TEST(Reach, UnsoundInputIsAStatus) {
   EXPECT_EQ(solve_reach(problem).status, "24 targets for 25 grippers");
   problem = article_problem();
   problem.targets[7].x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(solve_reach(problem).status, "the mold is not defined at the target of gripper (3, 2)");
+  EXPECT_EQ(solve_reach(problem).status, "the mold is not defined at the target of gripper [3, 2]");
   problem = article_problem();
   problem.rig.fixed = {6, 1};
   EXPECT_EQ(solve_reach(problem).status, "the fixed gripper is not one of the rig");
@@ -305,8 +305,8 @@ TEST(Reach, TheExplanationNamesTheFloorTheWorstGripperAndTheCause) {
   ReachResult result = solve_reach(problem);
   const std::string text = explain_reach(problem, result);
   EXPECT_NE(text.find(" mm (largest distance)"), std::string::npos) << text;
-  EXPECT_TRUE(text.find("gripper (1, 1)") != std::string::npos ||
-              text.find("gripper (3, 1)") != std::string::npos)
+  EXPECT_TRUE(text.find("gripper [1, 1]") != std::string::npos ||
+              text.find("gripper [3, 1]") != std::string::npos)
       << text;
   EXPECT_NE(text.find("joint offset causes most"), std::string::npos) << text;
   EXPECT_NE(text.find("instead of 100.0 mm"), std::string::npos) << text;

@@ -206,7 +206,7 @@ TEST(SchedulePicture, ShowsStrokesInOrderOfArrival) {
   EXPECT_EQ(markup_fault(svg), "");
   EXPECT_TRUE(contains(svg, "wave &lt;1&gt;"));
   EXPECT_EQ(count(svg, "\u2193 100 mm"), 4u);  // two preshapes, two strokes; two speeds are one stroke
-  EXPECT_LT(svg.find(">1,1<"), svg.find(">2,1<"));
+  EXPECT_LT(svg.find(">[1, 1]<"), svg.find(">[2, 1]<"));
   EXPECT_TRUE(contains(svg, ">9.1<") && contains(svg, ">11.5<"));
   rig.rows = 2;
   EXPECT_THROW(schedule_picture(two_grippers(), rig, ""), std::invalid_argument);
