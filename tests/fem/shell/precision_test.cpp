@@ -203,7 +203,7 @@ TEST(SingleDrape, ClosesItsBooksAndEndsWithTheScoresOfDouble) {
     ASSERT_TRUE(read.errors.empty());
     const DrapeProblem problem(std::move(read.definition));
     drape[single ? 1 : 0] =
-        problem.run(to_schedule(problem.frame(), uniform_strokes(problem.frame())), "summary");
+        problem.run(to_schedule(problem.frame(), uniform_strokes(problem.frame())), "report");
   }
   const Score &one = drape[0].score, &two = drape[1].score;
   ASSERT_TRUE(one.valid);
