@@ -28,7 +28,7 @@ struct Ply {
 };
 
 struct MappingOptions {
-  Generators generators = Generators::mid_sides;
+  Generators generators = Generators::axes;
   Eigen::Vector2d start{0, 0};      ///< point of the mold where the mapping starts (x, y) [m]
   Eigen::Vector2d ply_start{0, 0};  ///< point of the ply that is placed there (u, v) [m]
   double cell_size = 0.005;         ///< largest edge of a net cell [m]

@@ -69,7 +69,7 @@ Chart history_chart(const StagedResult& search) {
 }
 
 std::vector<std::string> notes_of(const DrapeProblem& problem) {
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = map_warnings(problem.definition(), problem.mapping());
   const MaterialNotes& material = problem.definition().material_notes;
   for (const std::string* source :
        {&material.source, &material.tension_source, &material.compression_source, &material.shear_source}) {

@@ -28,7 +28,7 @@ StressSetup small_rig(const std::vector<std::string>& overrides) {
     "mold": {"shape": "sphere", "extent": [["0 mm", "200 mm"], ["0 mm", "200 mm"]],
       "centre": ["100 mm", "100 mm", "-500 mm"], "radius": "600 mm"},
     "friction": {"coefficient": 0.5},
-    "mapping": {},
+    "mapping": {"generators": "mid_sides"},
     "grippers": {"columns": 2, "rows": 2, "spacing": "110 mm", "joint_offset": "2 mm"},
     "gravity": "9.81 m/s^2",
     "damping": {"alpha": "200 1/s"},

@@ -228,6 +228,7 @@ TEST(Reach, TheSeedsFloorGrowsInProportionToTheJointOffset) {
   ReachProblem problem = article_problem();
   const Ply ply{0.405, 0.405, problem.fixed_place, 0};
   MappingOptions options;
+  options.generators = Generators::mid_sides;
   options.start = problem.fixed_place;
   const Net net = map_ply(problem.mold, ply, options);
   for (int k = 0; k < 25; ++k)
