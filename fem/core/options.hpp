@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <tuple>
 
 namespace drapeplan {
 
@@ -20,10 +21,11 @@ struct FemOptions {
   int step_interval = 32;    ///< steps between two choices of the step; 0: one step, safe for all strains
   bool rates = true;         ///< false: slowest curves only, whatever tables the material has
   Precision precision = Precision::double_lanes;  ///< of the shell's forces; the rest is in double
-  int fibre_points =
-      2;  ///< across each fibre at mid-thickness: 1 or 2; with 1 only hourglass control is left
-  double hourglass = 0.005;  ///< in-plane hourglass stiffness over that of a bilinear element of fibre in
-                             ///< compression; directors have the full one
+  /// Across each fibre at mid-thickness: 1 or 2; with 1 only hourglass control is left.
+  int fibre_points = 2;
+  /// In-plane hourglass stiffness over that of a bilinear element of fibre in compression; directors have the
+  /// full one.
+  double hourglass = 0.005;
   /// Damping ratio along the fibres at the highest frequency. A fibre that is stiffer in tension than in
   /// compression is a spring with two stiffnesses, which central differences feed in narrow windows of the
   /// step from 0.4 of the stable one on. With a ratio of 0.1 and up to 0.95 of the stable step (which the
@@ -32,6 +34,15 @@ struct FemOptions {
   double contact_stiffness = 0.05;  ///< of a free node, over its membrane stiffness
   double contact_damping = 0.2;     ///< share of the critical damping of a node on its contact spring
 };
+
+inline auto fields_of(const FemOptions& of) {
+  const auto& [mesh_size, section_points, mass_scaling, fibre_mass_scaling, target_step, time_scaling,
+               step_safety, step_interval, rates, precision, fibre_points, hourglass, bulk_viscosity,
+               contact_stiffness, contact_damping] = of;
+  return std::tie(mesh_size, section_points, mass_scaling, fibre_mass_scaling, target_step, time_scaling,
+                  step_safety, step_interval, rates, precision, fibre_points, hourglass, bulk_viscosity,
+                  contact_stiffness, contact_damping);
+}
 
 /// Stable step with a damping ratio at the highest frequency, velocities half a step late, over that without.
 inline double viscous_share(double ratio) {
@@ -43,5 +54,10 @@ struct RestCriterion {
   double speed = 1e-4;  ///< [m/s]
   double hold = 0.1;    ///< [s]
 };
+
+inline auto fields_of(const RestCriterion& of) {
+  const auto& [speed, hold] = of;
+  return std::tie(speed, hold);
+}
 
 }  // namespace drapeplan

@@ -43,12 +43,12 @@ struct RunSummary {
   double wall_seconds = 0;
   double element_updates_per_second = 0;
   Energies energy;
-  double largest_kinetic_ratio = 0;    ///< kinetic energy of the ply's free nodes over internal energy at the
-                                       ///< end of each tenth, from the second on
+  /// Kinetic energy of the ply's free nodes over internal energy at the end of each tenth, from the second
+  /// on.
+  double largest_kinetic_ratio = 0;
   double largest_hourglass_share = 0;  ///< stored hourglass energy over internal energy, at the same instants
   double largest_penetration = 0;      ///< of the ply's underside below the mold over the run [m]
-  double largest_link_error =
-      0;  ///< error of an interlink's length or of the fixed joint's place over the run [m]
+  double largest_link_error = 0;  ///< of an interlink's length or the fixed joint's place, over the run [m]
   std::uint64_t state_hash = 0;
 };
 

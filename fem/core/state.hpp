@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "fem/core/fields.hpp"
 #include "fem/core/lanes.hpp"
 
 namespace drapeplan {
@@ -72,13 +73,62 @@ struct State {
   /// CornerShares. Empty where one step is chosen for good.
   std::vector<double> lightness;
   std::array<double, kBooks> work{};  ///< done on the moving masses since the start [J]
-  RunRecord record;                   ///< not part of the hash
+  RunRecord record;
 
   /// Time from the half-step velocities before t to those after it [s].
   [[nodiscard]] double kick_time() const { return 0.5 * (dt_before + dt); }
 };
 
-/// FNV-1a over all bits of the state that belong to nodes and pads (padding left out).
+/// What of a field the hash of a state counts.
+enum class Hashed {
+  all,
+  nodes,  ///< the entries of nodes, not what pads them to whole lanes: that depends on the machine
+  no,     ///< nothing: it is saved only
+};
+
+// The lists of fields: what saves, loads or hashes a state visits them. A field that is added and not bound
+// does not compile.
+
+/// Hands every field of a state to `visit(field, Hashed)`.
+void visit_fields(EitherConst<State> auto& of, const auto& visit) {
+  auto& [step, time, dt, dt_before, stable_dt, position, velocity, director, director_rate, anchor, stuck,
+         history, edges, pads, lightness, work, record] = of;
+  visit(step, Hashed::all);
+  visit(time, Hashed::all);
+  visit(dt, Hashed::all);
+  visit(dt_before, Hashed::all);
+  visit(stable_dt, Hashed::all);
+  visit(position, Hashed::nodes);
+  visit(velocity, Hashed::nodes);
+  visit(director, Hashed::nodes);
+  visit(director_rate, Hashed::nodes);
+  visit(anchor, Hashed::nodes);
+  visit(stuck, Hashed::nodes);
+  visit(history, Hashed::all);
+  visit(pads, Hashed::all);
+  visit(work, Hashed::all);
+  visit(edges, Hashed::no);      // other directions give other velocities one step later
+  visit(lightness, Hashed::no);  // another one gives another stable_dt when the step is next chosen
+  visit(record, Hashed::no);     // what a run has seen: no motion depends on it
+}
+
+/// Hands every field of a pad to `visit(field)`.
+void visit_fields(EitherConst<PadState> auto& of, const auto& visit) {
+  auto& [centre, rotation, velocity, angular_velocity, released] = of;
+  visit(centre), visit(rotation.coeffs()), visit(velocity), visit(angular_velocity), visit(released);
+}
+
+/// Hands every figure of a record to `visit(figure)`.
+void visit_fields(EitherConst<RunRecord> auto& of, const auto& visit) {
+  auto& [fibre_strain, fibre_compression, actuator_force, link_error, penetration, energy, balance,
+         hourglass_share, kinetic_ratio, last_motion] = of;
+  for (auto* figure : {&fibre_strain, &fibre_compression, &actuator_force, &link_error, &penetration, &energy,
+                       &balance, &hourglass_share, &kinetic_ratio, &last_motion}) {
+    visit(*figure);
+  }
+}
+
+/// FNV-1a over all fields that are Hashed.
 std::uint64_t hash_state(const State& state, int node_count);
 
 }  // namespace drapeplan

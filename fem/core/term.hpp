@@ -11,8 +11,8 @@
 
 namespace drapeplan {
 
-inline constexpr int kChunk =
-    8 * kLanes;  ///< nodes of a chunk: what contact looks up for them stays in the cache
+/// Nodes of a chunk: what contact looks up for them stays in the cache.
+inline constexpr int kChunk = 8 * kLanes;
 
 /// Forces of one term on the nodes, booked under one entry of the ledger.
 struct Forces {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,11 @@ struct Curve {
   [[nodiscard]] double largest_slope() const;      ///< [Pa]
   [[nodiscard]] double smallest_slope() const;     ///< smallest one above zero; 0 if there is none [Pa]
 };
+
+inline auto fields_of(const Curve& of) {
+  const auto& [strain, stress] = of;
+  return std::tie(strain, stress);
+}
 
 /// Stress over strain at one or several rates: linear in strain along each curve, linear in
 /// log(1 + rate / floor) between curves, which is the logarithm of the rate for rates far above the floor and
@@ -36,6 +42,11 @@ struct StressTable {
   /// @param rate  of growth [1/s], >= 0;  @param floor  [1/s], > 0.
   [[nodiscard]] double operator()(double strain, double rate, double floor) const;
 };
+
+inline auto fields_of(const StressTable& of) {
+  const auto& [curves, rates] = of;
+  return std::tie(curves, rates);
+}
 
 /// How the shear stress of the table is measured.
 enum class ShearMeasure {
@@ -59,5 +70,12 @@ struct Fabric {
     return tension.rate_dependent() || compression.rate_dependent() || shear.rate_dependent();
   }
 };
+
+inline auto fields_of(const Fabric& of) {
+  const auto& [thickness, areal_density, tension, compression, shear, shear_measure, transverse_shear_modulus,
+               rate_floor, rate_filter] = of;
+  return std::tie(thickness, areal_density, tension, compression, shear, shear_measure,
+                  transverse_shear_modulus, rate_floor, rate_filter);
+}
 
 }  // namespace drapeplan

@@ -29,7 +29,7 @@ class Lookup {
     load_pairs(line_.data(), place, intercept, slope);
     return intercept + slope * at;
   }
-  /// Steepest slope within kLookAhead pieces of `at`: what a stable step must bear until it is chosen anew.
+  /// Steepest slope within kLookAhead pieces of `at`: what a stable step must carry until it is chosen anew.
   [[nodiscard]] Lanes steepest_near(const Lanes& at) const {
     namespace stdx = std::experimental;
     const Lanes place = stdx::clamp((at - Lanes(lower_)) * Lanes(per_step_), Lanes(0.0), Lanes(last_));

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <tuple>
 #include <vector>
 
 #include "mapping/polygon.hpp"
@@ -19,9 +20,14 @@ struct Mesh {
   [[nodiscard]] int element_count() const { return int(quads.size()); }
 };
 
+inline auto fields_of(const Mesh& of) {
+  const auto& [rest, quads, outline] = of;
+  return std::tie(rest, quads, outline);
+}
+
 /// Mesh of a width-by-height rectangle centred at the origin, aligned with the fibres, edges at most
 /// `mesh_size`. The outline starts at corner (-,-).
-/// @throws std::invalid_argument if a length is not positive.
+/// @throws WrongInput if a length is not positive.
 Mesh rectangle_mesh(double width, double height, double mesh_size);
 
 /// The same with mesh lines through given places (pads must cover the same piece of ply on every mesh): equal
@@ -37,7 +43,7 @@ Mesh rectangle_mesh(double width, double height, double mesh_size, const std::ve
 /// more than 20 degrees is met by a node; flatter ones are a curve that the mesh follows to second order.
 /// Lines go through the given places and, where there is room, through corners. The outline starts at the
 /// node nearest to the polygon's first corner.
-/// @throws std::invalid_argument with the place where the mesh size is too large for the outline, or if the
+/// @throws WrongInput with the place where the mesh size is too large for the outline, or if the
 /// polygon is not simple.
 Mesh outline_mesh(const Polygon& outline, double mesh_size, const std::vector<double>& u = {},
                   const std::vector<double>& v = {});

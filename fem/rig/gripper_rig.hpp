@@ -26,10 +26,10 @@ struct TiedFields {
 
 /// Scratch of one run: free and mean velocities, the constraint system.
 struct RigScratch {
-  std::vector<Eigen::Vector3d> free_v, free_w;  ///< mean velocities of pads before constraints: what damping
-                                                ///< sees
-  std::vector<Eigen::Vector3d> stop, joint_v;   ///< moments of stops [N m]; mean velocities of joints
-  std::vector<Eigen::Vector3d> actuator;        ///< forces [N]
+  /// Mean velocities of pads before constraints: what damping sees.
+  std::vector<Eigen::Vector3d> free_v, free_w;
+  std::vector<Eigen::Vector3d> stop, joint_v;  ///< moments of stops [N m]; mean velocities of joints
+  std::vector<Eigen::Vector3d> actuator;       ///< forces [N]
   LinkScratch links;
   bool converged = true;  ///< every step so far met the constraints
 };
@@ -46,7 +46,7 @@ class GripperRig {
   /// [kg], [kg m^2]
   /// @param place  x-y of each joint in the flat start [m];  @param turn  of the ply frame from the world's
   /// x-y [rad]
-  /// @throws std::invalid_argument if a pad has no node under it, or two pads share one.
+  /// @throws WrongInput if a pad has no node under it, or two pads share one.
   GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>& rest, const std::vector<double>& mass,
              const std::vector<double>& inertia, std::vector<Eigen::Vector2d> place, double turn);
 
@@ -55,7 +55,7 @@ class GripperRig {
   /// Those of each pad.
   [[nodiscard]] std::vector<std::vector<int>> tied_by_pad() const;
 
-  /// @throws std::invalid_argument if a schedule is not one for this rig in its flat start.
+  /// @throws WrongInput if a schedule is not one for this rig in its flat start.
   void check(const Schedule& schedule) const;
 
   /// How many times heavier than its tied nodes a pad is, in the motion in which it is least so (>= 1); for

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace drapeplan {
@@ -25,6 +26,11 @@ struct RotationLimits {
   Eigen::Vector2d about_warp{-0.5 * std::numbers::pi, 0.5 * std::numbers::pi};
   Eigen::Vector2d about_weft{-0.5 * std::numbers::pi, 0.5 * std::numbers::pi};
 };
+
+inline auto fields_of(const RotationLimits& of) {
+  const auto& [about_warp, about_weft] = of;
+  return std::tie(about_warp, about_weft);
+}
 
 /// Rectangular grid of grippers, centred on the ply, numbered row by row: the rows run along the warp.
 struct RigOptions {
@@ -62,6 +68,15 @@ struct RigOptions {
             (index / columns - 0.5 * (rows - 1)) * spacing};
   }
 };
+
+/// Without the limits of schedules: what a schedule commands is its own matter.
+inline auto fields_of(const RigOptions& of) {
+  const auto& [columns, rows, spacing, pad_radius, pad_mass, joint_offset, tilt_limit, rotation_limits,
+               driven, interlinks, fixed, actuator_stiffness, actuator_force_limit, max_velocity, blend_time,
+               release_time] = of;
+  return std::tie(columns, rows, spacing, pad_radius, pad_mass, joint_offset, tilt_limit, rotation_limits,
+                  driven, interlinks, fixed, actuator_stiffness, actuator_force_limit);
+}
 
 /// Mesh lines through columns of pads along u, and through rows of them along v [m], increasing. The lines of
 /// a pad are so far apart, `mesh_size` or less, that the nodes which it holds span the area of its disc:

@@ -1,16 +1,16 @@
 #include "fem/run/monitor.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <sstream>
 
 #include "fem/run/move_grips.hpp"
 
 namespace drapeplan {
 namespace {
 
-/// Far beyond what any carbon fibre bears (2 %): what comes here is numerics, which books alone cannot see.
+/// Far beyond what any carbon fibre stands (2 %): what comes here is numerics, which books alone cannot see.
 constexpr double kTornStrain = 0.2;
 
 /// Its sine is 0.98: up to there the shell tabulates the law of shear, which goes on linearly in the sine.
@@ -27,12 +27,6 @@ constexpr double kHeldShare = 0.05;
 double beyond(const Extent& extent, double x, double y) {
   return std::max(
       {extent.lower.x() - x, x - extent.upper.x(), extent.lower.y() - y, y - extent.upper.y(), 0.0});
-}
-
-std::string millimetres(double length) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3g mm", 1e3 * length);
-  return text;
 }
 
 /// Strain of round-off, far from the origin: what a ply stores by it is nothing.
@@ -90,7 +84,9 @@ bool Monitor::holds_more(const State& state, double limit) {
   return stored.fabric + stored.hourglass > limit + rounding;
 }
 
-bool Monitor::look(State& state, RunSummary& summary) {
+/// Springs and viscosity start empty: what the ply gave it must have taken. A step that is too long pumps
+/// energy out of it, and the books of that still close.
+std::string Monitor::fault_of_books(State& state) {
   RunRecord& record = state.record;
   const Energies now = energies(model_, state);
   const double balance =
@@ -99,35 +95,34 @@ bool Monitor::look(State& state, RunSummary& summary) {
        {now.kinetic, now.internal, now.external, now.friction, now.contact, now.damping, now.constraint}) {
     record.energy = std::max(record.energy, std::abs(part));
   }
-  if (!std::isfinite(balance)) return fail(state, "energy is not finite", summary);
-  // Springs and viscosity start empty: what the ply gave it must have taken. A step that is too long pumps
-  // energy out of it, and the books of that still close.
+  if (!std::isfinite(balance)) return "energy is not finite";
   const double largest = largest_energy(model_, state);
   if (now.internal < -kGivenShare * largest)
-    return fail(
-        state,
-        "the ply gives energy that it never took: the step is unstable; lower step_safety or step_interval",
-        summary);
+    return "the ply gives energy that it never took: the step is unstable; lower step_safety or "
+           "step_interval";
   if (holds_more(state, now.internal + kHeldShare * largest))
-    return fail(
-        state,
-        "the ply holds energy that it never took: the step was unstable; lower step_safety or step_interval",
-        summary);
+    return "the ply holds energy that it never took: the step was unstable; lower step_safety or "
+           "step_interval";
   if (std::min(now.contact, now.friction) < -kGivenShare * largest)
-    return fail(state, "contact gives energy that it never took: the step is unstable; lower step_safety",
-                summary);
+    return "contact gives energy that it never took: the step is unstable; lower step_safety";
   if (state.work[size_t(Book::fibre_inertia)] > kGivenShare * largest)
-    return fail(state, "fibre inertia gives energy that it never took: lower fibre_mass_scaling", summary);
+    return "fibre inertia gives energy that it never took: lower fibre_mass_scaling";
   record.balance = std::max(record.balance, std::abs(balance));
+  return {};
+}
+
+std::string Monitor::fault_of_nodes(const State& state) const {
   for (size_t n = 0; n < size_t(model_.node_count()); ++n) {
-    if (std::isfinite(state.position.x[n]) && std::isfinite(state.position.y[n]) &&
-        std::isfinite(state.position.z[n]) && std::isfinite(state.velocity.x[n]) &&
-        std::isfinite(state.velocity.y[n]) && std::isfinite(state.velocity.z[n])) {
-      continue;
+    for (const VectorField* field : {&state.position, &state.velocity}) {
+      if (!std::isfinite(field->x[n]) || !std::isfinite(field->y[n]) || !std::isfinite(field->z[n]))
+        return fmt::format("not finite at node {}", n);
     }
-    return fail(state, "not finite at node " + std::to_string(n), summary);
   }
-  double shear = 0;
+  return {};
+}
+
+std::string Monitor::fault_of_strains(State& state) {
+  RunRecord& record = state.record;
   model_.shell().strains(state, strains_);
   for (const auto* list : {&strains_.warp_strain, &strains_.weft_strain}) {
     for (const double strain : *list) {
@@ -136,23 +131,36 @@ bool Monitor::look(State& state, RunSummary& summary) {
     }
   }
   if (!(std::max(record.fibre_strain, record.fibre_compression) <= kTornStrain))
-    return fail(state, "a fibre is torn or the step is unstable", summary);
+    return "a fibre is torn or the step is unstable";
+  double shear = 0;
   for (const double angle : strains_.shear) shear = std::max(shear, std::abs(angle));
   if (!(shear <= kTabulatedShear))
-    return fail(state, "an element is sheared by more than 78.5 deg, where the law of shear ends", summary);
-  if (!model_.scene().mold) return true;
+    return "an element is sheared by more than 78.5 deg, where the law of shear ends";
+  return {};
+}
+
+/// A gap is never negative: a ply inside the mold would look perfectly draped.
+std::string Monitor::fault_on_mold(State& state) {
+  if (!model_.scene().mold) return {};
   note_penetration(state);
   const double thickness = model_.scene().fabric.thickness;
-  // A gap is never negative: a ply inside the mold would look perfectly draped.
-  if (record.penetration > thickness)
-    return fail(
-        state,
-        "the ply came " + millimetres(record.penetration) + " inside the mold: more than its thickness",
-        summary);
+  if (state.record.penetration > thickness)
+    return fmt::format("the ply came {:.3g} mm inside the mold: more than its thickness",
+                       1e3 * state.record.penetration);
   if (slid_ > overhang_ + thickness)
-    return fail(state, "the ply slid " + millimetres(slid_) + " over the mold's edge, where its extent ends",
-                summary);
-  return true;
+    return fmt::format("the ply slid {:.3g} mm over the mold's edge, where its extent ends", 1e3 * slid_);
+  return {};
+}
+
+bool Monitor::look(State& state, RunSummary& summary) {
+  std::string fault = fault_of_books(state);
+  if (fault.empty()) fault = fault_of_nodes(state);
+  if (fault.empty()) fault = fault_of_strains(state);
+  if (fault.empty()) fault = fault_on_mold(state);
+  if (fault.empty()) return true;
+  summary.status = RunStatus::diverged;
+  summary.message = fmt::format("{}, seen at step {}, t = {:g} s", fault, state.step, state.time);
+  return false;
 }
 
 // The distance to the tangent plane at the vertical foot (5e-8 m on the article's mold) tells who is worth
@@ -176,14 +184,6 @@ void Monitor::note_penetration(State& state) {
       state.record.penetration = std::max(state.record.penetration, surface - distance);
     }
   }
-}
-
-bool Monitor::fail(const State& state, const std::string& what, RunSummary& summary) {
-  std::ostringstream text;
-  text << what << ", seen at step " << state.step << ", t = " << state.time << " s";
-  summary.status = RunStatus::diverged;
-  summary.message = text.str();
-  return false;
 }
 
 void Monitor::compare_energies(State& state) const {

@@ -1,6 +1,8 @@
 // Watches a run: books, finiteness, strains; turns what it saw into the summary.
 #pragma once
 
+#include <string>
+
 #include "fem/core/run_summary.hpp"
 #include "fem/run/simulate.hpp"
 #include "fem/run/workspace.hpp"
@@ -22,9 +24,14 @@ class Monitor {
   void close(State& state, RunSummary& summary) const;
 
  private:
+  // What is wrong with a state, in words; empty if nothing is.
+  std::string fault_of_books(State& state);
+  [[nodiscard]] std::string fault_of_nodes(const State& state) const;
+  std::string fault_of_strains(State& state);
+  std::string fault_on_mold(State& state);
+
   void note_penetration(State& state);
   bool holds_more(const State& state, double limit);
-  static bool fail(const State& state, const std::string& what, RunSummary& summary);
 
   const Model& model_;
   double overhang_ = 0;  ///< of the flat start over the mold's edge [m]

@@ -1,16 +1,18 @@
 #include "fem/run/simulate.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "fem/run/monitor.hpp"
 #include "fem/run/move_grips.hpp"
 #include "fem/run/stable_step.hpp"
 #include "fem/run/workspace.hpp"
 #include "fem/terms/contact.hpp"
+#include "mapping/error.hpp"
 
 namespace drapeplan {
 namespace {
@@ -24,7 +26,7 @@ constexpr double kTimeSlack = 1e-12;  // of the duration: round-off of summed st
 /// Height of the flat ply at the start: all joints stand at the same height.
 double start_height(const Model& model, const RunRequest& request) {
   if (!model.rig()) return model.scene().start_height;
-  if (!request.schedule) throw std::invalid_argument("simulate: a rig needs a schedule");
+  if (!request.schedule) throw WrongInput("simulate: a rig needs a schedule");
   model.rig()->check(*request.schedule);
   return request.schedule->paths.front().front().z - model.scene().rig->joint_offset;
 }
@@ -39,10 +41,10 @@ void refuse_start_in_mold(const Model& model, const State& state) {
     const double stretch = std::hypot(1.0, slope);
     const double inside = 0.5 * thickness - (state.position.z[n] - jet.z) / stretch;
     if (inside > kSlack * thickness) {  // false where the mold is not defined
-      throw std::invalid_argument(
-          "simulate: the flat ply's underside starts " + std::to_string(1e3 * inside) +
-          " mm below the mold at x = " + std::to_string(state.position.x[n]) +
-          " m, y = " + std::to_string(state.position.y[n]) + " m: check its place and the start height");
+      throw WrongInput(fmt::format(
+          "simulate: the flat ply's underside starts {:f} mm below the mold at x = {:f} m, y = {:f} m: "
+          "check its place and the start height",
+          1e3 * inside, state.position.x[n], state.position.y[n]));
     }
   }
 }
@@ -52,7 +54,7 @@ struct Clock {
   Clock(const Model& model, const RunRequest& request) {
     const double scaling = model.scene().options.time_scaling;
     end = request.duration > 0 ? request.duration : (request.schedule ? request.schedule->duration() : 0);
-    if (!(end > 0)) throw std::invalid_argument("simulate: neither a schedule nor a duration is given");
+    if (!(end > 0)) throw WrongInput("simulate: neither a schedule nor a duration is given");
     end /= scaling;
     pause = request.pause > 0 ? request.pause / scaling : end;
     motion_end = request.schedule ? request.schedule->last_motion() / scaling : 0;
@@ -60,7 +62,7 @@ struct Clock {
       if (!grip.velocity.isZero()) motion_end = end;
     }
     if (!(end / model.dt() <= kMostSteps))
-      throw std::invalid_argument("simulate: the run would need more than 1e10 steps");
+      throw WrongInput("simulate: the run would need more than 1e10 steps");
   }
   [[nodiscard]] bool ended(const State& state) const { return state.time >= end * (1 - kTimeSlack); }
   /// Number of equal parts of the run that have passed.
@@ -83,10 +85,10 @@ void choose_step(const Model& model, const Clock& clock, State& state, Workspace
   } else if (state.step % options.step_interval == 0) {
     state.stable_dt = stable_step(model, state, work.step);
     if (model.fibre_inertia()) {
-      model.fibre_inertia()->aim(state);
+      model.fibre_inertia()->take_directions(state);
       work.inertia.ready = false;
     }
-    state.dt = std::min(options.step_safety * state.stable_dt, model.servo_dt());
+    state.dt = std::min(options.step_safety * state.stable_dt, model.actuator_dt());
     if (state.step == 0) state.dt_before = state.dt;
   }
   state.dt = std::min(state.dt, clock.end - state.time);
@@ -107,6 +109,27 @@ State first_state(const Model& model, const RunRequest& request) {
   State state = model.flat_state(start_height(model, request));
   if (model.scene().mold) refuse_start_in_mold(model, state);
   return state;
+}
+
+/// Why a run ended, where nothing that was seen said it.
+/// @param links_kept  interlinks had their length at every step.
+void say_why(const Clock& clock, bool rests, bool links_kept, const State& state, RunSummary& summary) {
+  if (summary.message.empty() && !std::isfinite(state.time)) {
+    summary.status = RunStatus::diverged;
+    summary.message = fmt::format(
+        "the stable step is not finite: the steps before were unstable; after step {}", state.step);
+  }
+  if (!links_kept && summary.status == RunStatus::done) {
+    summary.status = RunStatus::diverged;
+    summary.message = fmt::format(
+        "interlinks could not be kept at their length: pads are too fast, or the step is unstable; seen at "
+        "step {}, t = {:f} s",
+        state.step, state.time);
+  }
+  if (!summary.message.empty()) return;
+  const bool paused = !rests && !clock.ended(state);
+  summary.message = rests ? "the ply is at rest" : paused ? "paused, to be continued" : "the time is over";
+  if (paused) summary.status = RunStatus::paused;
 }
 
 }  // namespace
@@ -153,23 +176,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   result.final = take_snapshot(model, state, drive);
   if (running) monitor.close(state, summary);
   if (running && clock.ended(state) && frame < frames) request.observe(result.final);
-  if (summary.message.empty() && !std::isfinite(state.time)) {
-    summary.status = RunStatus::diverged;
-    summary.message = "the stable step is not finite: the steps before were unstable; after step " +
-                      std::to_string(state.step);
-  }
-  if (!work.rig.converged && summary.status == RunStatus::done) {
-    summary.status = RunStatus::diverged;
-    summary.message =
-        "interlinks could not be kept at their length: pads are too fast, or the step is unstable; seen at "
-        "step " +
-        std::to_string(state.step) + ", t = " + std::to_string(state.time) + " s";
-  }
-  if (summary.message.empty()) {
-    const bool paused = !rests && !clock.ended(state);
-    summary.message = rests ? "the ply is at rest" : paused ? "paused, to be continued" : "the time is over";
-    if (paused) summary.status = RunStatus::paused;
-  }
+  say_why(clock, rests, work.rig.converged, state, summary);
   summary.steps = state.step;
   summary.dt = state.time / double(std::max<std::int64_t>(state.step, 1));
   summary.simulated_time = state.time;

@@ -15,8 +15,8 @@ struct RunRequest {
   const Schedule* schedule = nullptr;  ///< needed with a rig: all joints start at the same height
   double duration = 0;                 ///< of the schedule's clock; 0: until the schedule ends [s]
   const State* from = nullptr;         ///< goes on from here instead of the flat start
-  double pause =
-      0;  ///< stops at the first step at or after it, to be continued; 0: never [s, schedule's clock]
+  /// Stops at the first step at or after it, to be continued; 0: never [s, schedule's clock].
+  double pause = 0;
   std::int64_t steps = 0;  ///< stops after so many of its own, to be continued; 0: no limit
   int frames = 0;          ///< snapshots handed to `observe`, equally spaced in time, the start included
   std::function<void(const Snapshot&)> observe = nullptr;
@@ -30,7 +30,7 @@ struct RunResult {
 
 /// Runs the model. A run that diverges is a result, never an exception.
 /// A run that pauses and goes on from its state has the same bits as one that never did.
-/// @throws std::invalid_argument if the schedule does not fit the rig, or neither schedule nor duration is
+/// @throws WrongInput if the schedule does not fit the rig, or neither schedule nor duration is
 /// given.
 RunResult simulate(const Model& model, const RunRequest& request);
 

@@ -34,8 +34,8 @@ class Tangent {
     for (size_t g = 0; g < model.pad_nodes().size(); ++g) {
       if (!state.pads[g].released) continue;
       for (const int node : model.pad_nodes()[g]) {
-        mobility_[size_t(node)] = 1 / model.own_mass(node);
-        turning_mobility_[size_t(node)] = 1 / model.own_inertia(node);
+        mobility_[size_t(node)] = 1 / model.masses().own_mass(node);
+        turning_mobility_[size_t(node)] = 1 / model.masses().own_inertia(node);
       }
     }
   }
@@ -153,11 +153,11 @@ double stable_step(const Model& model, State& state, StepScratch& scratch) {
       store(load(&sum.rotation[n]) * slack + load(&others.rotation[n]), &sum.rotation[n]);
       store(load(&others.damping[n]), &sum.damping[n]);
     }
-    model.bear_released(state, sum);
-    const double rate = model.highest_rate(sum);
-    model.update_lightness(sum, rate, state.lightness);
+    model.bounds().raise_for_released_nodes(state, sum);
+    const double rate = model.bounds().highest_rate(sum);
+    model.bounds().update_lightness(sum, rate, state.lightness);
     if (round > 1) continue;
-    const double step = model.stable_dt(rate);
+    const double step = model.bounds().stable_dt(rate);
     // Mass on edges was made for the steepest fibre that the law has.
     return model.fibre_inertia() ? std::min(step, model.fibre_inertia_dt() / std::sqrt(steepest)) : step;
   }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fem/model/model.hpp"
+#include "fem/rig/schedule.hpp"
 
 namespace drapeplan {
 
@@ -15,12 +16,17 @@ struct StateReading {
   std::string error;  ///< names the file
 };
 
-/// Writes a state. The file is complete or not there: it is written beside and renamed.
-/// @throws std::runtime_error if the file cannot be written.
-void save_state(const std::filesystem::path& path, const Model& model, const State& state);
+/// Writes a state, and what it was made with. The file is complete or not there: it is written beside and
+/// renamed.
+/// @param schedule  that the rig has played; null without a rig.
+/// @throws NotFinished if the file cannot be written.
+void save_state(const std::filesystem::path& path, const Model& model, const State& state,
+                const Schedule* schedule = nullptr);
 
 /// Reads a state that save_state wrote for a model with the same fingerprint. Refuses files that are cut,
-/// changed (checksum), of another format or of another model.
-StateReading load_state(const std::filesystem::path& path, const Model& model);
+/// changed (checksum), of another format, of another model, or made under another schedule: one that differs
+/// from `schedule` before the state's time. What comes later may differ.
+StateReading load_state(const std::filesystem::path& path, const Model& model,
+                        const Schedule* schedule = nullptr);
 
 }  // namespace drapeplan

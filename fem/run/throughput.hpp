@@ -52,7 +52,7 @@ struct ThroughputRequest {
   int repeats = 5;
 };
 
-/// @throws std::runtime_error if the scene diverges.
+/// @throws NotFinished if the scene diverges.
 Throughput measure_throughput(const Model& model, const ThroughputRequest& request);
 
 }  // namespace drapeplan

@@ -21,7 +21,8 @@ struct KickPolicy {
 };
 
 // One pass over the nodes: forces are summed, velocities kicked and the work of every entry on free nodes
-// booked, with the mean of both velocities. Held nodes move by other rules and are booked with theirs.
+// booked, with the mean of both velocities. Held nodes move by other rules and are booked with theirs. In one
+// piece, over 60 lines: parts of it would be calls within the loop that hand over all of its registers.
 template <KickPolicy kHas>
 void kick(const Model& model, State& state, Workspace& work) {
   const double h = state.kick_time(), alpha = model.alpha();

@@ -43,8 +43,8 @@ inline SectionStiffness<double> steepest_section(double thickness, double fibre,
   return {both, both, thickness * shear, 1};
 }
 
-/// What is left of a fibre when mass on edges bears (1 + kFibreInertiaMargin) times its steepest stretch. The
-/// margin bears what couples stretch to curvature, C: with S the stretch carried, the quadratic form of
+/// What is left of a fibre when mass on edges carries (1 + kFibreInertiaMargin) times its steepest stretch.
+/// The margin carries what couples stretch to curvature, C: with S the stretch carried, the quadratic form of
 /// strain e and curvature k, margin S e^2 + 2 C e k + C^2 / (margin S) k^2, is a square.
 /// @param off  share of the stretch that is not along the edges.  @param carried  with the margin [N/m].
 inline constexpr double kFibreInertiaMargin = 0.1;
@@ -62,8 +62,8 @@ V gyration_squared(const ElementGeometry<V>& g, double thickness) {
   return V(thickness * thickness / 12) + V(kElementShare) * g.area;
 }
 
-/// How an element's bound is spread over its nodes: a node with slack, one whose mass could bear more
-/// stiffness than its elements have, bears a larger part of them, and those with none a smaller one.
+/// How an element's bound is spread over its nodes: a node with slack, one whose mass could carry more
+/// stiffness than its elements have, carries a larger part of them, and those with none a smaller one.
 template <class V>
 struct CornerShares {
   std::array<V, 4> lightness;  ///< 1 / slack, in (0, 1]

@@ -16,13 +16,13 @@ struct ElementGeometry {
   V area;                ///< [m^2]
   V half1, half2;        ///< half the element's length along each fibre [m]
   V skew1, skew2;        ///< h.X and h.Y: zero for a parallelogram [m]
-  V r11, r12, r21,
-      r22;             ///< half the element along its own directions: X,r = (r11, r12), X,s = (r21, r22) [m]
+  /// Half the element along its own directions: X,r = (r11, r12), X,s = (r21, r22) [m].
+  V r11, r12, r21, r22;
   V across1, across2;  ///< gradients of h.x/4 across each fibre, 1 / (4 half) [1/m]
   V shape;             ///< of the bilinear element: area (1/half1^2 + 1/half2^2) / 96 [-]
   V inverse;           ///< of r11 r22 - r12 r21 [1/m^2]
-  V linear_r,
-      linear_s;  ///< weights of linear transverse shear: (r21^2 + r22^2) inverse^2 / 3, and of r1 [1/m^2]
+  /// Weights of linear transverse shear: (r21^2 + r22^2) inverse^2 / 3, and of r1 [1/m^2].
+  V linear_r, linear_s;
 
   [[nodiscard]] std::array<V*, 19> parts() {
     return {&b10, &b11, &b20, &b21,     &area,    &half1, &half2,   &skew1,    &skew2,   &r11,

@@ -1,9 +1,8 @@
 #include "fem/shell/shell.hpp"
 
-#include <stdexcept>
-
 #include "fem/shell/single.hpp"
 #include "fem/shell/term.hpp"
+#include "mapping/error.hpp"
 
 namespace drapeplan {
 
@@ -19,7 +18,7 @@ std::unique_ptr<Shell> make_in_precision(const Mesh& mesh, const Fabric& fabric,
 
 std::unique_ptr<Shell> make_shell(const Mesh& mesh, const Fabric& fabric, const FemOptions& options) {
   if (options.fibre_points != 1 && options.fibre_points != 2)
-    throw std::invalid_argument("shell: fibre_points must be 1 or 2");
+    throw WrongInput("shell: fibre_points must be 1 or 2");
   switch (options.section_points) {
     case 1:
       return make_in_precision<1>(mesh, fabric, options);
@@ -28,7 +27,7 @@ std::unique_ptr<Shell> make_shell(const Mesh& mesh, const Fabric& fabric, const 
     case 5:
       return make_in_precision<5>(mesh, fabric, options);
     default:
-      throw std::invalid_argument("shell: section_points must be 1, 3 or 5");
+      throw WrongInput("shell: section_points must be 1, 3 or 5");
   }
 }
 

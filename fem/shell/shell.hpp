@@ -8,7 +8,6 @@
 #include "fem/core/term.hpp"
 #include "fem/law/fabric.hpp"
 #include "fem/mesh/mesh.hpp"
-#include "fem/shell/kernel.hpp"
 
 namespace drapeplan {
 
@@ -24,16 +23,16 @@ class Shell : public Term {
   virtual void add_slow_stiffness(NodalStiffness& stiffness) const = 0;
   /// Like add_stiffness, without what fibre inertia carries.
   virtual void add_stiffness_without_fibres(NodalStiffness& stiffness) const = 0;
-  /// Of the fibres that it lets added mass bear, by the slowest curves.
+  /// Of the fibres that added mass may carry, by the slowest curves.
   virtual void add_fibre_stiffness(NodalStiffness& stiffness) const = 0;
-  /// By element: whether mass on its edges can bear its fibres.
+  /// By element: whether mass on its edges can carry its fibres.
   [[nodiscard]] virtual std::vector<char> with_fibre_inertia() const = 0;
-  /// Tells at which step [s] mass on edges bears the steepest fibres: bulk viscosity damps them as well.
+  /// Tells at which step [s] mass on edges carries the steepest fibres: bulk viscosity damps them as well.
   virtual void set_fibre_inertia_step(double stable_dt) = 0;
-  /// What that mass must bear: force per width and strain [N/m].
+  /// What that mass must carry: force per width and strain [N/m].
   [[nodiscard]] virtual double fibre_inertia_stretch() const = 0;
   /// The section's tangents at a state, for add_bounds: section_count() numbers.
-  /// @return the steepest force per width and strain of a fibre that added mass bears, over
+  /// @return the steepest force per width and strain of a fibre that added mass carries, over
   /// fibre_inertia_stretch().
   virtual double look_at_sections(const State& state, std::vector<double>& sections) const = 0;
   [[nodiscard]] virtual size_t section_count() const = 0;
@@ -53,7 +52,7 @@ class Shell : public Term {
 };
 
 /// Builds the term for options.section_points (1, 3 or 5).
-/// @throws std::invalid_argument for another number or an element of area <= 0.
+/// @throws WrongInput for another number or an element of area <= 0.
 std::unique_ptr<Shell> make_shell(const Mesh& mesh, const Fabric& fabric, const FemOptions& options);
 
 }  // namespace drapeplan

@@ -1,13 +1,14 @@
 #include "fem/shell/tables.hpp"
 
 #include <cmath>
-#include <stdexcept>
+
+#include "mapping/error.hpp"
 
 namespace drapeplan {
 namespace {
 
-constexpr double kShearCorrection =
-    5.0 / 6;                               // Reissner's factor for a homogeneous section; [Krogh], Eq. (14)
+// Reissner's factor for a homogeneous section; [Krogh], Eq. (14).
+constexpr double kShearCorrection = 5.0 / 6;
 constexpr double kTabulatedStrain = 0.02;  // at least; beyond the table the last piece goes on
 constexpr double kFibreStep = 4e-5;  // strain per piece: the power law of tension is met to 1e-5 of its end
 constexpr double kTabulatedSine = 0.98;  // 78.5 degrees; tau / cos g goes on linearly from there
@@ -74,7 +75,7 @@ ElementGeometry<double> element_geometry(const Mesh& mesh, const std::array<int,
   const Eigen::Vector2d ac = X[2] - X[0], bd = X[3] - X[1];
   ElementGeometry<double> g{};
   g.area = 0.5 * (ac.x() * bd.y() - ac.y() * bd.x());
-  if (!(g.area > 0)) throw std::invalid_argument("shell: an element's area is not positive");
+  if (!(g.area > 0)) throw WrongInput("shell: an element's area is not positive");
   g.b10 = -bd.y() / (2 * g.area);
   g.b11 = ac.y() / (2 * g.area);
   g.b20 = bd.x() / (2 * g.area);

@@ -15,7 +15,7 @@ KernelMaterial kernel_material(const Fabric& fabric, const FemOptions& options);
 /// Curves by strain and rate.
 RateTables rate_tables(const Fabric& fabric);
 
-/// @throws std::invalid_argument if the element's area is not positive.
+/// @throws WrongInput if the element's area is not positive.
 ElementGeometry<double> element_geometry(const Mesh& mesh, const std::array<int, 4>& quad);
 
 }  // namespace drapeplan

@@ -6,77 +6,12 @@
 #include <type_traits>
 
 #include "fem/law/rates.hpp"
+#include "fem/shell/blocks.hpp"
 #include "fem/shell/bounds.hpp"
 #include "fem/shell/shell.hpp"
 #include "fem/shell/tables.hpp"
 
 namespace drapeplan {
-
-/// A run of elements, at most kLanes; idle lanes have the geometry of the last element, and no area.
-struct Block {
-  std::array<std::array<int, size_t(kLanes)>, 4> node;  ///< by corner and lane
-  bool in_row = false;     ///< elements of one row of a grid: nodes of a corner follow each other
-  bool rectangle = false;  ///< all elements are, along the fibres
-  bool twins = false;      ///< there are triangles
-  int used = 0;
-  size_t geometry = 0;  ///< among the different ones: in a rectangle few blocks differ
-};
-
-/// Adds a row's shares of its elements' lower (or upper) corners to nodes: `own` to node `at` and those that
-/// follow, `next` to the nodes after them.
-inline void add_row(double* sum, size_t at, const Lanes& own, const Lanes& next) {
-  store(load(sum + at) + (own + shifted_up(next)), sum + at);
-  sum[at + size_t(kLanes)] += next[size_t(kLanes) - 1];
-}
-
-/// A vector field as the corners of blocks see it. In a row, corners 1 and 2 are the next nodes of corners 0
-/// and 3, so that lanes load without gathering and sums of neighbours are made before they are stored.
-template <class T>
-struct Rows {
-  template <class Field>
-  explicit Rows(Field& field) : part{field.x.data(), field.y.data(), field.z.data()} {}
-
-  [[nodiscard]] Corners<Lanes> in_row(const Block& block) const {
-    const auto lower = size_t(block.node[0][0]), upper = size_t(block.node[3][0]);
-    return {lanes(lower), lanes(lower + 1), lanes(upper + 1), lanes(upper)};
-  }
-  [[nodiscard]] Corners<Lanes> anywhere(const Block& block) const {
-    Corners<Lanes> out;
-    for (size_t c = 0; c < 4; ++c) {
-      const auto& node = block.node[c];
-      out[c] = {pick(part[0], node), pick(part[1], node), pick(part[2], node)};
-    }
-    return out;
-  }
-  [[nodiscard]] Corners<Lanes> corners(const Block& block) const {
-    return block.in_row ? in_row(block) : anywhere(block);
-  }
-  void add_in_row(const Block& block, const Corners<Lanes>& values) const {
-    const auto lower = size_t(block.node[0][0]), upper = size_t(block.node[3][0]);
-    add_row(part[0], lower, values[0].x, values[1].x);
-    add_row(part[1], lower, values[0].y, values[1].y);
-    add_row(part[2], lower, values[0].z, values[1].z);
-    add_row(part[0], upper, values[3].x, values[2].x);
-    add_row(part[1], upper, values[3].y, values[2].y);
-    add_row(part[2], upper, values[3].z, values[2].z);
-  }
-  void add_anywhere(const Block& block, const Corners<Lanes>& values) const {
-    for (size_t c = 0; c < 4; ++c) {
-      for (size_t l = 0; l < size_t(block.used); ++l) {
-        const auto at = size_t(block.node[c][l]);
-        part[0][at] += values[c].x[l];
-        part[1][at] += values[c].y[l];
-        part[2][at] += values[c].z[l];
-      }
-    }
-  }
-
- private:
-  [[nodiscard]] Vec3<Lanes> lanes(size_t at) const {
-    return {load(part[0] + at), load(part[1] + at), load(part[2] + at)};
-  }
-  std::array<T*, 3> part;
-};
 
 struct NoTables {};
 
@@ -100,7 +35,7 @@ class ShellTerm : public Shell {
       lag_rate_ = options.time_scaling / fabric.rate_filter;
     }
     for (const auto& quad : mesh.quads) geometry_.push_back(element_geometry(mesh, quad));
-    for (size_t first = 0; first < mesh.quads.size();) first += add_block(first);
+    lay_blocks(mesh, geometry_, blocks_, geometries_);
   }
 
   [[nodiscard]] std::string_view name() const override { return kRates ? "shell with rates" : "shell"; }
@@ -293,19 +228,6 @@ class ShellTerm : public Shell {
   static constexpr size_t kStrainSlots = 2 * A;
   static constexpr size_t kLawSlots = 3 * size_t(N) + 2 * size_t(A - 1);
 
-  size_t add_block(size_t first);
-
-  /// Idle lanes of a row's end work on nodes that do not belong together.
-  static void clear_idle(const Block& block, Lanes& value) {
-    const Lanes lane([](auto l) { return double(l); });
-    std::experimental::where(lane >= Lanes(double(block.used)), value) = Lanes(0.0);
-  }
-  static void clear_idle(const Block& block, Corners<Lanes>& values) {
-    for (Vec3<Lanes>& value : values) {
-      for (Lanes* part : {&value.x, &value.y, &value.z}) clear_idle(block, *part);
-    }
-  }
-
   [[nodiscard]] CornerShares<Lanes> corner_shares(const Block& block,
                                                   const std::vector<double>& lightness) const {
     CornerShares<Lanes> shares;
@@ -320,10 +242,10 @@ class ShellTerm : public Shell {
     return shares;
   }
 
-  /// Modulus that mass on edges bears, with a margin for what couples stretch to curvature [Pa].
+  /// Modulus that mass on edges carries, with a margin for what couples stretch to curvature [Pa].
   [[nodiscard]] double fibre_inertia_slope() const { return (1 + kFibreInertiaMargin) * fibre_slope_; }
 
-  /// Takes away what mass on edges bears. It acts along the edges; fibres in between are at a small angle,
+  /// Takes away what mass on edges carries. It acts along the edges; fibres in between are at a small angle,
   /// and the square of its sine is left.
   void leave_without_fibre_inertia(const ElementGeometry<Lanes>& g, const MotionProducts<Lanes>& m,
                                    SectionStiffness<Lanes>& section) const {
@@ -333,7 +255,7 @@ class ShellTerm : public Shell {
     section.fibre2 = without_fibre_inertia(section.fibre2, off2, Lanes(fibre_inertia_stretch()));
   }
 
-  /// In the rest shape, with one section for elements whose fibres added mass may bear and one for others.
+  /// In the rest shape, with one section for elements whose fibres added mass may carry and one for others.
   void add_steepest(const SectionStiffness<double>& of_fibre_inertia, const SectionStiffness<double>& others,
                     NodalStiffness& stiffness) const {
     const std::vector<char> with_fibre_inertia = this->with_fibre_inertia();
@@ -382,61 +304,18 @@ class ShellTerm : public Shell {
   Mesh mesh_;
   KernelMaterial material_;
   double fibre_slope_, slow_shear_slope_, shear_slope_;  ///< steepest, instantaneous ones with rates [Pa]
-  double
-      viscous_mass_;  ///< damping ratio times scaled mass per area, over the middle point's weight [kg/m^3]
+  /// Damping ratio times scaled mass per area, over the middle point's weight [kg/m^3].
+  double viscous_mass_;
   bool fibre_inertia_;
   double bulk_viscosity_;
-  double viscous_fibre_inertia_ =
-      0;                 ///< the same of mass on edges, per volume and squared element length [Pa s^2]
+  /// The same as viscous_mass_ of mass on edges, per volume and squared element length [Pa s^2].
+  double viscous_fibre_inertia_ = 0;
   double lag_rate_ = 0;  ///< of lagged strains, in the simulation's time [1/s]
   std::conditional_t<kRates, RateTables, NoTables> tables_;
   std::vector<ElementGeometry<double>> geometry_;
   std::vector<Block> blocks_;
   std::vector<ElementGeometry<Lanes>> geometries_;
 };
-
-/// Appends the block that starts at element `first`; a block ends where the run of consecutive nodes ends.
-template <int N, int A, bool kRates>
-size_t ShellTerm<N, A, kRates>::add_block(size_t first) {
-  size_t used = std::min(mesh_.quads.size() - first, size_t(kLanes)), run = 1;
-  const auto& start = mesh_.quads[first];
-  const auto continues = [&](size_t l) {
-    for (size_t c = 0; c < 4; ++c) {
-      if (mesh_.quads[first + l][c] != start[c] + int(l)) return false;
-    }
-    return true;
-  };
-  while (run < used && continues(run)) ++run;
-  Block block;
-  // The end of a row leaves some lanes idle; only a short run takes what follows along, gathered.
-  block.in_row = run >= size_t(kLanes) / 2 && start[1] == start[0] + 1 && start[2] == start[3] + 1;
-  if (block.in_row) used = run;
-  block.used = int(used);
-  ElementGeometry<Lanes> geometry;
-  for (size_t l = 0; l < size_t(kLanes); ++l) {
-    const size_t element = first + std::min(l, used - 1);
-    for (size_t c = 0; c < 4; ++c) {
-      const auto& quad = mesh_.quads[element];
-      block.node[c][l] = quad[c];
-      block.twins = block.twins || quad[c] == quad[(c + 1) % 4];
-    }
-    ElementGeometry<double> one = geometry_[element];
-    if (l >= used) one.area = 0;
-    for (size_t k = 0; k < one.parts().size(); ++k) (*geometry.parts()[k])[l] = *one.parts()[k];
-  }
-  block.rectangle = geometry.rectangle();
-  const auto same = [&geometry](ElementGeometry<Lanes>& other) {
-    for (size_t k = 0; k < geometry.parts().size(); ++k) {
-      if (std::experimental::any_of(*geometry.parts()[k] != *other.parts()[k])) return false;
-    }
-    return true;
-  };
-  const auto known = std::find_if(geometries_.begin(), geometries_.end(), same);
-  block.geometry = size_t(known - geometries_.begin());
-  if (known == geometries_.end()) geometries_.push_back(geometry);
-  blocks_.push_back(block);
-  return used;
-}
 
 /// Builds the term for a number of section points; instantiated in files of their own, since each takes long
 /// to compile.

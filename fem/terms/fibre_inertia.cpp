@@ -122,7 +122,7 @@ FibreInertiaScratch FibreInertia::scratch() const {
   return s;
 }
 
-void FibreInertia::aim(State& state) const {
+void FibreInertia::take_directions(State& state) const {
   for (size_t fibre = 0; fibre < kFibres; ++fibre) {
     const Lines& lines = lines_[fibre];
     VectorField& n = state.edges[fibre];

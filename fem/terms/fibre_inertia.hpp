@@ -50,7 +50,7 @@ class FibreInertia {
 
   [[nodiscard]] FibreInertiaScratch scratch() const;
   /// Takes the directions of edges from the state's positions into state.edges.
-  void aim(State& state) const;
+  void take_directions(State& state) const;
   /// Adds to the sums of all forces what the added mass exerts on the nodes.
   void filter(const State& state, FibreInertiaScratch& scratch, VectorField& force) const;
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace drapeplan {
@@ -11,10 +12,16 @@ namespace drapeplan {
 struct Grip {
   std::string name;
   std::vector<int> nodes;
-  Eigen::Vector3d velocity{0, 0,
-                           0};  ///< reached at the end of the ramp, world frame [m/s] of the schedule's clock
-  double ramp = 0.1;            ///< from rest to `velocity`, with continuous acceleration at both ends [s]
+  /// Reached at the end of the ramp, world frame [m/s] of the schedule's clock.
+  Eigen::Vector3d velocity{0, 0, 0};
+  double ramp = 0.1;  ///< from rest to `velocity`, with continuous acceleration at both ends [s]
 };
+
+/// Without its name, which changes no result.
+inline auto fields_of(const Grip& of) {
+  const auto& [name, nodes, velocity, ramp] = of;
+  return std::tie(nodes, velocity, ramp);
+}
 
 /// Displacement since the start at time `t` of the schedule's clock [m].
 Eigen::Vector3d grip_displacement(const Grip& grip, double t);

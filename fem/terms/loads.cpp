@@ -1,7 +1,8 @@
 #include "fem/terms/loads.hpp"
 
-#include <stdexcept>
 #include <string>
+
+#include "mapping/error.hpp"
 
 namespace drapeplan {
 namespace {
@@ -61,12 +62,12 @@ std::unique_ptr<Term> make_loads(const Loads& loads, const std::vector<double>& 
   for (const auto* list : {&loads.forces, &loads.moments}) {
     for (const NodalLoad& load : *list) {
       if (load.node < 0 || size_t(load.node) >= area.size() || !load.value.allFinite()) {
-        throw std::invalid_argument("loads: node " + std::to_string(load.node) +
-                                    " does not exist or its load is not finite");
+        throw WrongInput("loads: node " + std::to_string(load.node) +
+                         " does not exist or its load is not finite");
       }
     }
   }
-  if (!loads.pressure.allFinite()) throw std::invalid_argument("loads: the pressure is not finite");
+  if (!loads.pressure.allFinite()) throw WrongInput("loads: the pressure is not finite");
   return std::make_unique<LoadsTerm>(loads, area);
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 #include "fem/core/term.hpp"
@@ -15,6 +16,11 @@ struct NodalLoad {
   Eigen::Vector3d value{0, 0, 0};
 };
 
+inline auto fields_of(const NodalLoad& of) {
+  const auto& [node, value] = of;
+  return std::tie(node, value);
+}
+
 /// Dead loads: they act in full from the first step on and keep their direction.
 ///
 /// A moment M turns the director d about a fixed axis: on d it is m = M x d, whose power m . dd/dt is M times
@@ -26,8 +32,13 @@ struct Loads {
   Eigen::Vector3d pressure{0, 0, 0};  ///< force per rest area of the ply [Pa]
 };
 
+inline auto fields_of(const Loads& of) {
+  const auto& [forces, moments, pressure] = of;
+  return std::tie(forces, moments, pressure);
+}
+
 /// @param area  rest area of each node [m^2]
-/// @throws std::invalid_argument if a load's node does not exist or its value is not finite.
+/// @throws WrongInput if a load's node does not exist or its value is not finite.
 std::unique_ptr<Term> make_loads(const Loads& loads, const std::vector<double>& area);
 
 }  // namespace drapeplan

@@ -37,7 +37,8 @@ struct PartOfRun {
 };
 
 /// Reads what --restart and --pause say. @throws std::invalid_argument with the reason.
-PartOfRun part_of_run(const SimulateOptions& options, const Model& model) {
+/// @param schedule  that the rig plays; null without a rig.
+PartOfRun part_of_run(const SimulateOptions& options, const Model& model, const Schedule* schedule) {
   PartOfRun part;
   if (!options.pause.empty()) {
     std::string fault;
@@ -47,15 +48,16 @@ PartOfRun part_of_run(const SimulateOptions& options, const Model& model) {
     part.pause = *time;
   }
   if (options.restart.empty()) return part;
-  StateReading reading = load_state(options.restart, model);
+  StateReading reading = load_state(options.restart, model, schedule);
   if (!reading.value) throw std::invalid_argument("--restart: " + reading.error);
   part.from = std::move(reading.value);
   return part;
 }
 
 /// Saves the state where --save says, and adds the stable step at it: as estimated, and the true one.
-void finish_run(const SimulateOptions& options, const Model& model, const RunResult& run, json& result) {
-  if (!options.save.empty()) save_state(options.save, model, run.state);
+void finish_run(const SimulateOptions& options, const Model& model, const Schedule* schedule,
+                const RunResult& run, json& result) {
+  if (!options.save.empty()) save_state(options.save, model, run.state, schedule);
   if (run.summary.status == RunStatus::diverged) return;
   StepScratch scratch(model);
   State state = run.state;
@@ -112,7 +114,7 @@ json probes_json(const Case& definition, const Model& model, const Snapshot& sta
 /// A case without grippers: strips and specimens.
 int simulate_free(const Case& definition, const SimulateOptions& options) {
   const Model model(scene_of(definition, definition.fidelities.at(options.fidelity)));
-  const PartOfRun part = part_of_run(options, model);
+  const PartOfRun part = part_of_run(options, model, nullptr);
   print_terms(model, options.common);
   std::vector<Snapshot> frames;
   RunRequest request;
@@ -123,7 +125,7 @@ int simulate_free(const Case& definition, const SimulateOptions& options) {
   request.observe = [&frames](const Snapshot& frame) { frames.push_back(frame); };
   const RunResult run = simulate(model, request);
   json result = summary_json(run.summary);
-  finish_run(options, model, run, result);
+  finish_run(options, model, nullptr, run, result);
   result["terms"] = model.term_names();
   json probes = json::object();
   if (!definition.probes.empty() || !definition.grips.empty()) {
@@ -195,12 +197,12 @@ int simulate_drape(Case definition, const SimulateOptions& options) {
   if (!schedule) return kInputWrong;
   const bool files = !options.common.out.empty();
   const Model& model = problem.model(options.fidelity);
-  const PartOfRun part = part_of_run(options, model);
+  const PartOfRun part = part_of_run(options, model, &*schedule);
   print_terms(model, options.common);
   const Drape drape = problem.run(*schedule, options.fidelity, files ? options.frames : 0,
                                   {part.from ? &*part.from : nullptr, part.pause});
   json result = summary_json(drape.run.summary);
-  finish_run(options, model, drape.run, result);
+  finish_run(options, model, &*schedule, drape.run, result);
   result["score"] = score_json(drape.score);
   result["terms"] = model.term_names();
   const std::string text = summary_text(drape.run.summary, model.node_count()) + score_line(drape);

@@ -19,7 +19,7 @@ FibreInertia::FibreInertia(const Mesh& /*mesh*/, const std::vector<char>& /*with
 FibreInertiaScratch FibreInertia::scratch() const {
   absent(kInertia);
 }
-void FibreInertia::aim(State& /*state*/) const {
+void FibreInertia::take_directions(State& /*state*/) const {
   absent(kInertia);
 }
 void FibreInertia::filter(const State& /*state*/, FibreInertiaScratch& /*scratch*/,

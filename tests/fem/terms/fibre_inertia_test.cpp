@@ -85,7 +85,7 @@ VectorXd filtered(const FibreInertia& inertia, const State& state, FibreInertiaS
 /// The filter as a matrix, column by column.
 MatrixXd matrix_of(Ply& ply) {
   const FibreInertia inertia = ply.inertia();
-  inertia.aim(ply.state);
+  inertia.take_directions(ply.state);
   FibreInertiaScratch scratch = inertia.scratch();
   MatrixXd q(ply.size(), ply.size());
   for (Eigen::Index k = 0; k < ply.size(); ++k)
@@ -196,7 +196,7 @@ VectorXd random_force(const Ply& ply) {
 
 VectorXd filtered(Ply& ply, const VectorXd& force) {
   const FibreInertia inertia = ply.inertia();
-  inertia.aim(ply.state);
+  inertia.take_directions(ply.state);
   FibreInertiaScratch scratch = inertia.scratch();
   return filtered(inertia, ply.state, scratch, force);
 }
@@ -215,7 +215,7 @@ TEST(FibreInertia, HoldsClampedNodesAndThoseUnderAPadUntilItIsReleased) {
   ply.tied = {{26, 27, 28, 38, 39, 40}, {31, 32}};
   ply.state.pads.resize(2);
   const FibreInertia inertia = ply.inertia();
-  inertia.aim(ply.state);
+  inertia.take_directions(ply.state);
   FibreInertiaScratch scratch = inertia.scratch();
   const VectorXd force = random_force(ply);
   VectorXd before = force;
@@ -330,10 +330,10 @@ TEST(FibreInertia, GoesOnWithTheSameBitsThroughAFile) {
         simulate(model, {.schedule = &schedule, .from = from ? &*from : nullptr, .pause = pause});
     ASSERT_EQ(part.summary.status, RunStatus::paused) << part.summary.message;
     EXPECT_NE(part.state.step % scene.options.step_interval, 0);  // directions are not taken anew at once
-    save_state(file, model, part.state);
-    StateReading reading = load_state(file, Model(scene));
+    save_state(file, model, part.state, &schedule);
+    StateReading reading = load_state(file, Model(scene), &schedule);
     ASSERT_TRUE(reading.value) << reading.error;
-    EXPECT_FALSE(load_state(file, Model(drape(3))).value);
+    EXPECT_FALSE(load_state(file, Model(drape(3)), &schedule).value);
     from = std::move(reading.value);
   }
   fs::remove(file);
@@ -417,7 +417,7 @@ TEST(FibreInertia, PlaysAStepThatIsNotAboveTheTrueOne) {
     ASSERT_NE(run.summary.status, RunStatus::diverged) << run.summary.message;
     StepScratch scratch(model);
     State state = run.state;
-    model.fibre_inertia()->aim(state);  // as choose_step does
+    model.fibre_inertia()->take_directions(state);  // as choose_step does
     const double estimate = stable_step(model, state, scratch), truth = true_stable_step(model, state);
     std::printf("at %.2f s: estimate %.3f us, true %.3f us, ratio %.3f\n", run.final.time, 1e6 * estimate,
                 1e6 * truth, estimate / truth);

@@ -1,0 +1,19 @@
+// How stiff the mold is to each node.
+#pragma once
+
+#include <memory>
+
+#include "fem/core/term.hpp"
+#include "fem/model/masses.hpp"
+#include "fem/model/step_bounds.hpp"
+#include "fem/shell/shell.hpp"
+
+namespace drapeplan {
+
+/// The contact of a scene with its mold. Its springs are shares of the ply's stiffness by its slowest curves:
+/// rates would make them needlessly stiff. Under pads they are as stiff as the step allows.
+/// @param inertial_rate  highest rate of a node with fibre inertia [1/s]; 0 without.
+std::unique_ptr<Term> make_scene_contact(const Scene& scene, const Shell& shell, const NodalMasses& masses,
+                                         const StepBounds& bounds, double inertial_rate);
+
+}  // namespace drapeplan
