@@ -20,7 +20,7 @@ struct MapResult {
 };
 
 /// Maps the ply of a case that has a mold and a mapping.
-/// @throws std::domain_error where the mold ends or a cell's minimisation fails.
+/// @throws NotFinished where the mold ends or a cell's minimisation fails.
 MapResult map_case(const Case& definition);
 
 /// How a mapping lays the ply down in plan, against `ply.position` and `ply.angle`. Draping bends, shears and
