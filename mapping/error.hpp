@@ -1,5 +1,5 @@
-// The two ways in which a call may fail that are no bug: the input is wrong, or the work could not be finished. Both
-// are thrown by all layers; the program turns them into its exit codes 2 and 3 in one place.
+// The two ways in which a call may fail that are no bug: the input is wrong, or the work could not be
+// finished. Both are thrown by all layers; the program turns them into its exit codes 2 and 3 in one place.
 #pragma once
 
 #include <stdexcept>

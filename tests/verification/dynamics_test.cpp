@@ -152,12 +152,12 @@ State swung(const Swing& swing) {
 
 /// Halves the step twice: the tip's place converges with second order to that of constant, much finer steps.
 void expect_second_order_in_time(Swing swing) {
-  const Eigen::Vector3d exact = get(swung({.parts = kExact}).x, kSwingElements);
+  const Eigen::Vector3d exact = get(swung({.parts = kExact}).position, kSwingElements);
   EXPECT_GT(std::abs(exact.z()), 0.02);
   std::vector<double> error;
   for (const int parts : {1, 2, 4}) {
     swing.parts = parts;
-    error.push_back((get(swung(swing).x, kSwingElements) - exact).norm());
+    error.push_back((get(swung(swing).position, kSwingElements) - exact).norm());
   }
   for (size_t k = 1; k < error.size(); ++k) {
     const double slope = std::log2(error[k - 1] / error[k]);

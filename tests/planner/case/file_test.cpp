@@ -95,29 +95,30 @@ TEST(CaseFile, TheEchoKeepsEveryBit) {
 
 TEST(CaseFile, TheFlexdraperCaseHoldsWhatThePaperSays) {
   const Case definition = good_case(kCases / "flexdraper-5x5.json");
-  EXPECT_EQ(value.material.thickness, 0.3e-3);
-  EXPECT_EQ(value.material.areal_density, 0.314);
-  EXPECT_NEAR(value.material.tension.slowest()(0.0067), 66.7e6, 1);
-  EXPECT_EQ(value.ply.width, 0.405);
-  EXPECT_EQ(*value.friction, 1.5);
-  EXPECT_EQ(*value.damping, 22);
-  EXPECT_EQ(*value.gravity, 9.81);
-  ASSERT_TRUE(value.grippers && value.mold && value.mapping);
-  EXPECT_EQ(value.grippers->count(), 25);
-  EXPECT_EQ(value.grippers->fixed, (std::array<int, 2>{3, 3}));
-  const CurvatureRange range = gaussian_curvature_range(*value.mold);
+  EXPECT_EQ(definition.material.thickness, 0.3e-3);
+  EXPECT_EQ(definition.material.areal_density, 0.314);
+  EXPECT_NEAR(definition.material.tension.slowest()(0.0067), 66.7e6, 1);
+  EXPECT_EQ(definition.ply.width, 0.405);
+  EXPECT_EQ(*definition.friction, 1.5);
+  EXPECT_EQ(*definition.damping, 22);
+  EXPECT_EQ(*definition.gravity, 9.81);
+  ASSERT_TRUE(definition.grippers && definition.mold && definition.mapping);
+  EXPECT_EQ(definition.grippers->count(), 25);
+  EXPECT_EQ(definition.grippers->fixed, (std::array<int, 2>{3, 3}));
+  const CurvatureRange range = gaussian_curvature_range(*definition.mold);
   EXPECT_NEAR(range.smallest, -25.46, 0.01);
   EXPECT_NEAR(range.largest, 23.41, 0.01);
-  EXPECT_EQ(value.fidelities.at("report").mesh_size, 0.0075);
-  EXPECT_GT(value.fidelities.at("search").time_scaling, value.fidelities.at("report").time_scaling);
-  EXPECT_EQ(value.fidelities.at("search").section_points, value.fidelities.at("report").section_points);
+  EXPECT_EQ(definition.fidelities.at("report").mesh_size, 0.0075);
+  EXPECT_GT(definition.fidelities.at("search").time_scaling, definition.fidelities.at("report").time_scaling);
+  EXPECT_EQ(definition.fidelities.at("search").section_points,
+            definition.fidelities.at("report").section_points);
 }
 
 TEST(CaseFile, AnAbsentSectionIsAbsentPhysics) {
   const Case definition = good_case(kCases / "sphere-mapping.json");
-  EXPECT_FALSE(value.grippers || value.gravity || value.damping || value.friction);
-  EXPECT_EQ(value.material.thickness, 0);
-  const json resolved = resolved_case(value);
+  EXPECT_FALSE(definition.grippers || definition.gravity || definition.damping || definition.friction);
+  EXPECT_EQ(definition.material.thickness, 0);
+  const json resolved = resolved_case(definition);
   for (const char* absent : {"grippers", "gravity", "material", "fem", "schedule", "optimise", "probes"}) {
     EXPECT_FALSE(resolved.contains(absent)) << absent;
   }
@@ -125,14 +126,14 @@ TEST(CaseFile, AnAbsentSectionIsAbsentPhysics) {
 
 TEST(CaseFile, MappingStartsUnderThePlyUnlessToldOtherwise) {
   const Case definition = good_case(kCases / "flexdraper-5x5.json", {"mapping.start=null"});
-  EXPECT_EQ(value.mapping->start, value.ply.position);
+  EXPECT_EQ(definition.mapping->start, definition.ply.position);
 }
 
 TEST(CaseFile, OverridesReachReferencedFiles) {
   const Case definition =
       good_case(kCases / "cantilever-150.json", {"material.thickness=0.4 mm", "gravity=null"});
-  EXPECT_EQ(value.material.thickness, 0.4e-3);
-  EXPECT_FALSE(value.gravity);
+  EXPECT_EQ(definition.material.thickness, 0.4e-3);
+  EXPECT_FALSE(definition.gravity);
   const Case linear = good_case(kCases / "elastica.json", {"material.modulus=\"0.7 GPa\""});
   EXPECT_EQ(linear.material.tension.slowest()(0.01), 0.7e7);
   EXPECT_EQ(linear.material.compression.slowest()(0.01), 0.7e7);
@@ -144,16 +145,16 @@ TEST(CaseFile, FemIsTheReportingFidelityAndTheStartOfTheOthers) {
   const Case definition =
       good_case(kCases / "flexdraper-5x5.json",
                 {"fem.mesh_size=12 mm", "fem.section_points=5", "fidelities.screen.mesh_size=20 mm"});
-  EXPECT_EQ(value.fidelities.at("report").mesh_size, 0.012);
-  EXPECT_EQ(value.fidelities.at("screen").mesh_size, 0.020);
-  EXPECT_EQ(value.fidelities.at("screen").section_points, 5);
+  EXPECT_EQ(definition.fidelities.at("report").mesh_size, 0.012);
+  EXPECT_EQ(definition.fidelities.at("screen").mesh_size, 0.020);
+  EXPECT_EQ(definition.fidelities.at("screen").section_points, 5);
 }
 
 TEST(CaseFile, FidelitiesMayHaveAnyName) {
   Case definition = good_case(kCases / "flexdraper-5x5.json");
-  value.fidelities["~2/a.b \xc3\xa9"].mesh_size = 0.02;
-  value.material.shear.curves[0].stress[1] = 1e-310;  // denormal: text must not refuse it
-  const ScratchFile echo(resolved_case(value).dump());
+  definition.fidelities["~2/a.b \xc3\xa9"].mesh_size = 0.02;
+  definition.material.shear.curves[0].stress[1] = 1e-310;  // denormal: text must not refuse it
+  const ScratchFile echo(resolved_case(definition).dump());
   EXPECT_EQ(good_case(echo.path).fidelities.at("~2/a.b \xc3\xa9").mesh_size, 0.02);
   EXPECT_EQ(good_case(echo.path).material.shear.slowest().stress[1], 1e-310);
 }
@@ -163,7 +164,7 @@ TEST(CaseFile, APolynomialMayBeStatedInMillimetres) {
   const Case definition =
       good_case(kCases / "flexdraper-5x5.json",
                 {"mold.unit=1 mm", "mold.terms=[{\"x\":2,\"y\":0,\"coefficient\":0.01}]"});
-  EXPECT_NEAR(value.mold->height(0.1, 0.3), 0.1, 1e-15);
+  EXPECT_NEAR(definition.mold->height(0.1, 0.3), 0.1, 1e-15);
 }
 
 TEST(CaseFile, AWrongOverrideIsNamedInTheError) {
