@@ -2,6 +2,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "planner/base/json_text.hpp"
 #include "planner/cli/cli.hpp"
 
 namespace drapeplan {
@@ -46,7 +47,7 @@ struct SchemaOptions {
 
 int schema(const SchemaOptions& options) {
   const json document = case_schema();
-  return deliver(document, document.dump(2) + '\n', options.common);
+  return deliver(document, dump_json(document, 2) + '\n', options.common);
 }
 
 struct ExplainOptions {

@@ -5,6 +5,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "planner/base/json_text.hpp"
+
 namespace drapeplan {
 namespace {
 
@@ -19,7 +21,7 @@ bool has_section(const Case& definition, const std::string& name) {
 
 bool write_json(const std::filesystem::path& file, const nlohmann::json& value) {
   std::ofstream stream(file);
-  stream << value.dump(kIndent) << '\n';
+  stream << dump_json(value, kIndent) << '\n';
   stream.close();
   if (!stream) std::cerr << file.string() << ": cannot be written\n";
   return bool(stream);
@@ -80,7 +82,7 @@ void print_warnings(const std::vector<std::string>& warnings, const CommonOption
 int deliver(const nlohmann::json& result, const std::string& text, const CommonOptions& options,
             const Case* resolved) {
   if (options.json) {
-    std::cout << result.dump(kIndent) << '\n';
+    std::cout << dump_json(result, kIndent) << '\n';
   } else if (!options.quiet) {
     std::cout << text;
   }

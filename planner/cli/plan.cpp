@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "planner/base/json_text.hpp"
 #include "planner/base/text.hpp"
 #include "planner/cli/cli.hpp"
 #include "planner/drape/result_fields.hpp"
@@ -112,7 +113,7 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, const std
   }
   print_warnings(map_warnings(problem.definition(), problem.mapping()), options.common);
   std::filesystem::create_directories(folder);
-  write_text(folder / "resolved.json", resolved_case(problem.definition()).dump(2) + "\n");
+  write_text(folder / "resolved.json", dump_json(resolved_case(problem.definition()), 2) + "\n");
   ProgressLine line;
   const PlanResult result =
       plan(problem, {folder, options.resume, options.common.threads}, [&](const Progress& progress) {
@@ -121,7 +122,7 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, const std
   if (result.best.score.valid)
     write_plan(folder, problem, result);  // no schedule for a robot from failed runs
   const json out = plan_json(problem, result);
-  write_text(folder / "result.json", out.dump(2) + "\n");
+  write_text(folder / "result.json", dump_json(out, 2) + "\n");
   if (!options.common.json && talk) {
     std::cout << '\n' << comparison_table(problem, result) << '\n' << result.search.message << '\n';
     std::cout << result.search.evaluations << " evaluations (" << result.search.failed_evaluations
@@ -196,7 +197,7 @@ int plan_all(const PlanVerbOptions& options) {
     if (code == kDone || one == kInputWrong) code = one;
   }
   if (options.common.json) {
-    std::cout << (results.size() == 1 ? results[0] : json{{"cases", results}}).dump(2) << '\n';
+    std::cout << dump_json(results.size() == 1 ? results[0] : json{{"cases", results}}, 2) << '\n';
   }
   return code;
 }

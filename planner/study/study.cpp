@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "fem/run/monitor.hpp"
+#include "planner/base/json_text.hpp"
 #include "planner/base/quantity.hpp"
 #include "planner/base/statistics.hpp"
 #include "planner/base/text.hpp"
@@ -211,7 +212,7 @@ Settings StudySubject::changes_of(const std::string& fidelity) const {
     if (base.contains(key) && base[key] == value) continue;
     changes["fem." + key] = value.is_string()         ? value.get<std::string>()
                             : value.is_number_float() ? format_number(value.get<double>())
-                                                      : value.dump();
+                                                      : dump_json(value);
   }
   return changes;
 }
