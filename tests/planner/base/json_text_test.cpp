@@ -62,7 +62,7 @@ TEST(JsonText, SyntaxErrorsHaveLineAndColumn) {
   expect_fault("{\"a\": [1, 2", "1:12 : ", "unexpected end of input");
   expect_fault("[\"\\ud800\"]", "1:9 : ", "surrogate");
   expect_fault("[\"\\udc00\"]", "1:8 : ", "surrogate");
-  expect_fault("[\"a\nb\"]", "2:1 : ", "control character");
+  expect_fault("[\"a\nb\"]", "1:4 : ", "control character");
   EXPECT_TRUE(parse_json_text("{\"a\": [1, 2").value.is_null());
 }
 

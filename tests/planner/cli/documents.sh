@@ -89,7 +89,7 @@ grep -vE '^  "name":' "$work/good-case.json" | sed '1s/{/{"description": "\\u000
 expect 0 check "$latin" --json
 valid "$work/stdout"
 expect 0 map "$latin" --json --out "$work/map"
-valid "$work/stdout" "$work"/map/*.{json,svg}
+valid "$work/stdout" "$work"/map/*.json
 small=(--set optimise.wave_evaluations=2 --set optimise.gripper_evaluations=2 --set optimise.finalists=1)
 expect 0 plan "$latin" --json "${small[@]}" --out "$work/plan"
 valid "$work/stdout" "$work"/plan/*.{json,svg,html}

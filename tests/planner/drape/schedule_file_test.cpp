@@ -202,9 +202,9 @@ TEST_F(ScheduleFile, InPlanePathsBelongToRigsThatDriveXAndY) {
           "plane_knots": [{"time": 0, "x": "left", "y": 0}, {"time": 0, "x": 1, "y": 2, "z": 3}]})";
   EXPECT_EQ(errors_of(with_grippers(kThird + R"(, "release": "soon"},)" + bad)),
             "/grippers/0/release: \"soon\": expected a bare number, e.g. 0.5; allowed: >= 0\n"
+            "/grippers/1/release: -1: out of range; allowed: >= 0\n"
             "/grippers/1/plane_knots/0/x: \"left\": expected a bare number, e.g. 0.5\n"
             "/grippers/1/plane_knots/1/z: unknown key \"z\"; known: \"time\", \"x\" or \"y\"\n"
-            "/grippers/1/release: -1: out of range; allowed: >= 0\n"
             "/grippers/1/plane_knots/1/time: 0: times must increase; the knot before is at 0\n");
 }
 

@@ -76,7 +76,7 @@ void damage_and_read(const std::string& original, int rounds, unsigned seed, con
 TEST(DamagedInput, CasesAreReadOrRefusedWithPlaces) {
   const std::string original =
       dump_json(resolved_case(read_case(kCases / "flexdraper-quick.json").definition), 1);
-  damage_and_read(original, 1500, 20240611, [](const fs::path& file) {
+  damage_and_read(original, 600, 20240611, [](const fs::path& file) {
     const CaseReading reading = read_case(file);
     if (reading.errors.empty()) dump_json(resolved_case(reading.definition));
     return reading.errors;
@@ -100,7 +100,7 @@ TEST(DamagedInput, SchedulesAreReadOrRefusedWithPlaces) {
   ]
 }
 )";
-  damage_and_read(original, 4000, 7, [&rig](const fs::path& file) {
+  damage_and_read(original, 1400, 7, [&rig](const fs::path& file) {
     const ScheduleReading reading = read_schedule(file, rig);
     if (reading.errors.empty()) {
       write_schedule(file, reading.value, rig);
