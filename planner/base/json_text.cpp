@@ -1,174 +1,206 @@
 #include "planner/base/json_text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <set>
+#include <iterator>
+#include <optional>
+
+#include "mapping/error.hpp"
+#include "planner/base/text.hpp"
 
 namespace drapeplan {
 namespace {
 
 using nlohmann::json;
 
-constexpr int kDeepest = 64;  // levels; a case needs 6, and recursion must not exhaust the stack
+constexpr size_t kDeepest = 64;  // levels; a case needs 6, and recursion must not exhaust the stack
 
 /// Line and column of the byte at `offset`.
 TextFault fault_at(std::string_view text, size_t offset, std::string message) {
-  offset = std::min(offset, text.size());
-  const std::string_view before = text.substr(0, offset);
-  const size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
-  TextFault fault;
-  fault.line = 1 + int(std::count(before.begin(), before.end(), '\n'));
-  fault.column = 1 + int(offset - line_start);
-  fault.message = std::move(message);
-  return fault;
+  const std::string_view before = text.substr(0, std::min(offset, text.size()));
+  const int line = 1 + int(std::count(before.begin(), before.end(), '\n'));
+  const int column = int(before.size() - (before.rfind('\n') + 1)) + 1;  // npos + 1 = 0
+  return {line, column, "", std::move(message)};
 }
 
-/// Accepts any valid text; keeps the place and the reason of the first fault.
-class SyntaxChecker : public json::json_sax_t {
- public:
-  size_t offset = 0;
-  std::string reason;
+/// The first byte that no text in plain UTF-8 has.
+std::optional<TextFault> encoding_fault(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) {
+    return fault_at(text, 0, "starts with a byte order mark; expected UTF-8 without one");
+  }
+  const size_t bad = std::min(utf8_prefix(text), text.find('\0'));
+  if (bad >= text.size()) return std::nullopt;
+  const bool wide = bad < 2 && text.size() > 1;  // its byte order mark, or the zero beside its first letter
+  return fault_at(
+      text, bad,
+      fmt::format("the byte 0x{:02X} is not text in UTF-8{}", static_cast<unsigned char>(text[bad]),
+                  wide ? " (the file may be in UTF-16)" : ""));
+}
 
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool key(string_t&) override { return true; }
-  bool start_object(std::size_t) override { return enter(); }
-  bool start_array(std::size_t) override { return enter(); }
-  bool end_object() override { return leave(); }
-  bool end_array() override { return leave(); }
+/// Line of the last byte that the parser has taken. It takes one byte more than a number has; that byte may
+/// be a line break, which still belongs to the line that it ends.
+struct LineCount {
+  int line = 1;
+  char last = ' ';
+  void take(char byte) {
+    if (last == '\n') ++line;
+    last = byte;
+  }
+};
+
+/// Hands the bytes of a text to the parser and counts their lines.
+class CountingIterator {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  CountingIterator(const char* at, LineCount* count) : at_(at), count_(count) {}
+  reference operator*() const { return *at_; }
+  CountingIterator& operator++() {
+    count_->take(*at_++);
+    return *this;
+  }
+  bool operator==(const CountingIterator& other) const { return at_ == other.at_; }
+
+ private:
+  const char* at_;
+  LineCount* count_;
+};
+
+/// Builds the value while it is parsed, and notes lines and faults.
+class Builder : public json::json_sax_t {
+ public:
+  Builder(std::string_view text, const LineCount& count, ParsedText& result)
+      : text_(text), count_(count), result_(result) {}
+
+  bool null() override { return add(nullptr); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(number_integer_t value) override { return add(value); }
+  bool number_unsigned(number_unsigned_t value) override { return add(value); }
+  bool number_float(number_float_t value, const string_t& digits) override {
+    const bool zero = digits.substr(0, digits.find_first_of("eE")).find_first_of("123456789") == digits.npos;
+    if (value == 0 && !zero) fault(next_pointer(), "number underflow parsing '" + digits + "'");
+    return add(value);
+  }
+  bool string(string_t& value) override {
+    if (value.find('\0') != value.npos) fault(next_pointer(), "the text holds a NUL character (\\u0000)");
+    return add(std::move(value));
+  }
+  bool binary(binary_t&) override { return false; }  // JSON has none
+  bool start_object(std::size_t) override { return open(json::object()); }
+  bool start_array(std::size_t) override { return open(json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+
+  bool key(string_t& key) override {
+    key_ = key;
+    const std::string pointer = next_pointer();
+    if (key.find('\0') != key.npos) fault(pointer, "the key holds a NUL character (\\u0000)");
+    if (levels_.back().value->contains(key)) {
+      fault(pointer, fmt::format("the key \"{}\" appears twice in this object; first on line {}", key,
+                                 result_.lines[pointer]));
+    }
+    result_.lines.emplace(pointer, count_.line);
+    return true;
+  }
+
   bool parse_error(std::size_t position, const std::string&, const json::exception& error) override {
-    offset = position > 0 ? position - 1 : 0;
-    reason = error.what();
+    std::string reason = clean_text(error.what());
     // The library's prefix names its exception and repeats the position.
     for (const char* start : {"syntax error", "number overflow"}) {
       const size_t found = reason.find(start);
-      if (found != std::string::npos) reason.erase(0, found);
+      if (found != reason.npos) reason.erase(0, found);
     }
+    result_.faults.push_back(fault_at(text_, position > 0 ? position - 1 : 0, std::move(reason)));
     return false;
   }
 
  private:
-  bool enter() {
-    if (++depth_ <= kDeepest) return true;
-    reason = "nested deeper than " + std::to_string(kDeepest) + " levels";
-    return false;
+  /// An object or a list that is not closed yet.
+  struct Level {
+    json* value;
+    std::string pointer;
+  };
+
+  /// Pointer of the value that comes next.
+  [[nodiscard]] std::string next_pointer() const {
+    if (levels_.empty()) return "";
+    const auto& [value, pointer] = levels_.back();
+    return pointer + (value->is_array() ? '/' + std::to_string(value->size()) : pointer_token(key_));
   }
-  bool leave() {
-    --depth_;
+
+  json& place(json value) {
+    result_.lines.emplace(next_pointer(), count_.line);  // a key has noted its line already
+    if (levels_.empty()) return result_.value = std::move(value);
+    json& parent = *levels_.back().value;
+    if (parent.is_object()) return parent[key_] = std::move(value);
+    parent.push_back(std::move(value));
+    return parent.back();
+  }
+
+  bool add(json value) {
+    place(std::move(value));
     return true;
   }
-  int depth_ = 0;
-};
 
-/// Walks a text that is known to be valid and notes the line of every value.
-class LineScanner {
- public:
-  LineScanner(std::string_view text, ParsedText& result) : text_(text), result_(result) {}
-
-  void run() {
-    skip_byte_order_mark();
-    skip_blanks();
-    result_.lines[""] = line_;
-    value("");
-  }
-
- private:
-  void value(const std::string& pointer) {
-    switch (text_[at_]) {
-      case '{':
-        return object(pointer);
-      case '[':
-        return array(pointer);
-      case '"':
-        string();
-        return;
-      default:
-        at_ = std::min(text_.find_first_of(",]} \t\r\n", at_), text_.size());
+  bool open(json empty) {
+    std::string pointer = next_pointer();
+    if (levels_.size() == kDeepest) {
+      fault(std::move(pointer), fmt::format("nested deeper than {} levels", kDeepest));
+      return false;
     }
+    json& value = place(std::move(empty));
+    levels_.push_back({&value, std::move(pointer)});
+    return true;
   }
 
-  void object(const std::string& pointer) {
-    std::set<std::string> seen;
-    ++at_;
-    for (skip_blanks(); text_[at_] != '}'; skip_comma()) {
-      const int line = line_;
-      const std::string key = string();
-      const std::string place = pointer + pointer_token(key);
-      if (!seen.insert(key).second) {
-        result_.faults.push_back({line, 0, place,
-                                  "the key \"" + key + "\" appears twice in this object; first on line " +
-                                      std::to_string(result_.lines[place])});
-      }
-      result_.lines.emplace(place, line);
-      skip_blanks();
-      ++at_;  // the colon
-      skip_blanks();
-      value(place);
-      skip_blanks();
-    }
-    ++at_;
+  bool close() {
+    levels_.pop_back();
+    return true;
   }
 
-  void array(const std::string& pointer) {
-    int index = 0;
-    ++at_;
-    for (skip_blanks(); text_[at_] != ']'; skip_comma()) {
-      const std::string place = pointer + '/' + std::to_string(index++);
-      result_.lines.emplace(place, line_);
-      value(place);
-      skip_blanks();
-    }
-    ++at_;
-  }
-
-  /// The string that starts here, without its escapes.
-  std::string string() {
-    const size_t start = at_++;
-    while (text_[at_] != '"') at_ += text_[at_] == '\\' ? 2 : 1;
-    ++at_;
-    return json::parse(text_.substr(start, at_ - start)).get<std::string>();
-  }
-
-  void skip_comma() {
-    if (text_[at_] == ',') ++at_;
-    skip_blanks();
-  }
-
-  void skip_blanks() {
-    while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos) {
-      if (text_[at_] == '\n') ++line_;
-      ++at_;
-    }
-  }
-
-  void skip_byte_order_mark() {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+  void fault(std::string pointer, std::string message) {
+    result_.faults.push_back({count_.line, 0, std::move(pointer), std::move(message)});
   }
 
   std::string_view text_;
+  const LineCount& count_;
   ParsedText& result_;
-  size_t at_ = 0;
-  int line_ = 1;
+  std::vector<Level> levels_;
+  std::string key_;  ///< of the value that comes next, in an object
 };
 
 }  // namespace
 
 ParsedText parse_json_text(std::string_view text) {
   ParsedText result;
-  SyntaxChecker checker;
-  if (!json::sax_parse(text, &checker)) {
-    result.faults.push_back(fault_at(text, checker.offset, checker.reason));
-    if (checker.offset == 0 && checker.reason.starts_with("nested")) result.faults.back().column = 0;
+  if (std::optional<TextFault> fault = encoding_fault(text)) {
+    result.faults.push_back(std::move(*fault));
     return result;
   }
-  result.value = json::parse(text);
-  LineScanner(text, result).run();
+  LineCount count;
+  Builder builder(text, count, result);
+  const CountingIterator begin(text.data(), &count), end(text.data() + text.size(), &count);
+  if (!json::sax_parse(begin, end, &builder)) result.value = nullptr;
   return result;
+}
+
+json checked_json(std::string_view text) {
+  ParsedText parsed = parse_json_text(text);
+  if (parsed.faults.empty()) return std::move(parsed.value);
+  const TextFault& fault = parsed.faults.front();
+  std::string place = fault.line > 1 ? fmt::format("line {}: ", fault.line) : "";
+  if (fault.column > 0) place += fmt::format("column {}: ", fault.column);
+  if (!fault.pointer.empty()) place += fault.pointer + ": ";
+  throw WrongInput(place + fault.message);
+}
+
+std::string dump_json(const json& value, int indent) {
+  return value.dump(indent, ' ', false, json::error_handler_t::replace);
 }
 
 std::string pointer_token(std::string_view key) {

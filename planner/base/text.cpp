@@ -1,5 +1,6 @@
 #include "planner/base/text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -8,6 +9,39 @@
 #include <system_error>
 
 namespace drapeplan {
+namespace {
+
+constexpr std::string_view kReplacement = "\uFFFD";
+
+struct Character {
+  char32_t code = 0;
+  size_t bytes = 0;  ///< 0: the text does not start with a character in UTF-8
+};
+
+/// The character that `text`, which is not empty, starts with (RFC 3629).
+Character first_character(std::string_view text) {
+  const auto byte = [text](size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U; };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return {char32_t(lead), 1};
+  const size_t bytes = lead < 0xC0 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : lead < 0xF8 ? 4 : 0;
+  if (bytes == 0) return {};
+  char32_t code = lead & (0x7FU >> bytes);
+  for (size_t k = 1; k < bytes; ++k) {
+    if ((byte(k) & 0xC0U) != 0x80) return {};
+    code = code << 6U | (byte(k) & 0x3FU);
+  }
+  constexpr std::array<char32_t, 5> kSmallest{0, 0, 0x80, 0x800, 0x10000};  // below it: a longer form than needed
+  const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
+  if (code < kSmallest[bytes] || surrogate || code > 0x10FFFF) return {};
+  return {code, bytes};
+}
+
+/// Of the characters of UTF-8 (XML 1.0, section 2.2). A carriage return would be read as a line break.
+bool allowed_in_xml(char32_t code) {
+  return code == '\t' || code == '\n' || (code >= 0x20 && code != 0xFFFE && code != 0xFFFF);
+}
+
+}  // namespace
 
 std::string exact(double value) {
   std::array<char, 40> buffer;  // the longest double has 24 characters
@@ -26,9 +60,34 @@ std::string fixed(double value, int decimals) {
   return zero && text.front() == '-' ? text.substr(1) : text;
 }
 
+size_t utf8_prefix(std::string_view text) {
+  size_t at = 0;
+  while (at < text.size()) {
+    const size_t bytes = first_character(text.substr(at)).bytes;
+    if (bytes == 0) break;
+    at += bytes;
+  }
+  return at;
+}
+
+std::string clean_text(std::string_view text) {
+  std::string clean;
+  while (!text.empty()) {
+    const Character character = first_character(text);
+    const size_t bytes = std::max<size_t>(character.bytes, 1);
+    if (character.bytes > 0 && allowed_in_xml(character.code)) {
+      clean += text.substr(0, bytes);
+    } else {
+      clean += kReplacement;
+    }
+    text.remove_prefix(bytes);
+  }
+  return clean;
+}
+
 std::string escape_markup(std::string_view text) {
   std::string escaped;
-  for (const char c : text) {
+  for (const char c : clean_text(text)) {
     switch (c) {
       case '&':
         escaped += "&amp;";
@@ -45,12 +104,8 @@ std::string escape_markup(std::string_view text) {
       case '\'':
         escaped += "&#39;";
         break;
-      case '\n':
-      case '\t':
-        escaped += c;
-        break;
       default:
-        escaped += static_cast<unsigned char>(c) < 0x20 ? std::string("\uFFFD") : std::string(1, c);
+        escaped += c;
     }
   }
   return escaped;

@@ -1,6 +1,7 @@
 // Small helpers of the files we write: numbers, escaping, whole files.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -13,8 +14,14 @@ std::string exact(double value);
 /// `value` with `decimals` digits after the point, never "-0.0"; an en dash where it is not finite.
 std::string fixed(double value, int decimals);
 
-/// For text and attribute values of HTML, SVG and XML: & < > " ' are replaced, and so are control characters
-/// that XML does not allow (by U+FFFD).
+/// Number of bytes at the start of `text` that are characters in UTF-8: all of them if the text is valid.
+size_t utf8_prefix(std::string_view text);
+
+/// `text` as UTF-8 that XML may hold: bytes that are no character, and characters that XML does not allow,
+/// become U+FFFD. Names of files and arguments may hold any bytes; documents may not.
+std::string clean_text(std::string_view text);
+
+/// For text and attribute values of HTML, SVG and XML: the text is cleaned, and & < > " ' are replaced.
 std::string escape_markup(std::string_view text);
 
 /// Writes a file by way of a temporary neighbour, so that no reader ever sees half of it.

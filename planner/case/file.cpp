@@ -10,7 +10,7 @@
 namespace drapeplan {
 
 CaseReading read_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  const InputDocument document(file, overrides);
+  const InputDocument document(file, overrides, keys_that_may_name_files());
   CaseReading reading;
   reading.errors = document.errors();
   if (!document.root().is_object()) return reading;

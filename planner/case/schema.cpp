@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "planner/base/json_text.hpp"
 #include "planner/base/spelling.hpp"
 #include "planner/case/fields.hpp"
 #include "planner/case/file.hpp"
@@ -238,7 +239,7 @@ std::string words(const json& list) {
   std::string text;
   for (const json& word : list) {
     if (!text.empty()) text += ", ";
-    text += word.is_string() ? word.get<std::string>() : word.dump();
+    text += word.is_string() ? word.get<std::string>() : dump_json(word);
   }
   return text;
 }

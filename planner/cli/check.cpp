@@ -4,6 +4,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "planner/base/json_text.hpp"
 #include "planner/cli/cli.hpp"
 
 namespace drapeplan {
@@ -50,7 +51,7 @@ struct SchemaOptions {
 int schema(const SchemaOptions& options) {
   const json document = case_schema();
   try_folder(options.common.out);
-  deliver(document, document.dump(2) + '\n', options.common);
+  deliver(document, dump_json(document, 2) + '\n', options.common);
   return kDone;
 }
 

@@ -12,6 +12,8 @@
 #include "planner/base/text.hpp"
 #include "planner/cli/streams.hpp"
 
+#include "planner/base/json_text.hpp"
+
 namespace drapeplan {
 namespace {
 
@@ -120,13 +122,13 @@ void print_warnings(const std::vector<std::string>& warnings, const CommonOption
 
 void deliver(const nlohmann::json& result, const std::string& text, const CommonOptions& options,
              const Case* resolved) {
-  const std::string document = result.dump(kIndent) + "\n";
+  const std::string document = dump_json(result, kIndent) + "\n";
   if (!options.out.empty()) {
     const std::filesystem::path folder(options.out);
     create_directories(folder);
     write_text(folder / "result.json", document);
     if (resolved != nullptr)
-      write_text(folder / "resolved.json", resolved_case(*resolved).dump(kIndent) + "\n");
+      write_text(folder / "resolved.json", dump_json(resolved_case(*resolved), kIndent) + "\n");
   }
   if (options.json || !options.quiet) print(options.json ? document : text, !options.out.empty());
 }

@@ -1,19 +1,21 @@
 #include "planner/drape/schedule_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
 #include "planner/base/text.hpp"
+#include "planner/input/document.hpp"
+#include "planner/input/kit.hpp"
+#include "planner/input/reader.hpp"
 
 namespace drapeplan {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Samples closer than this are one: far below any controller's cycle, far above round-off.
 constexpr double kSameTime = 1e-9;  // [s]
@@ -38,192 +40,107 @@ std::string json_number(double value) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
-/// Reads one file and keeps its errors.
-class Reader {
- public:
-  Reader(const std::filesystem::path& file, const RigOptions& rig) : file_(file.string()), rig_(rig) {}
-
-  ScheduleReading read() {
-    const Json root = parse();
-    if (reading_.errors.empty()) read_root(root);
-    return std::move(reading_);
-  }
-
- private:
-  void error(const std::string& path, const std::string& message, int line = 0) {
-    reading_.errors.push_back({file_, line, path, message});
-  }
-
-  Json parse() {
-    std::ifstream stream(file_, std::ios::binary);
-    if (!stream) {
-      error("", "cannot be opened");
-      return {};
-    }
-    const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-    try {
-      return Json::parse(text);
-    } catch (const Json::parse_error& fault) {
-      const size_t end = std::min(fault.byte > 0 ? fault.byte - 1 : 0, text.size());
-      const auto newlines = std::count(text.begin(), text.begin() + std::ptrdiff_t(end), '\n');
-      error("", "not valid JSON", int(newlines) + 1);
-    } catch (const Json::exception& fault) {  // a number out of range
-      error("", std::string("not valid JSON: ") + fault.what());
-    }
-    return {};
-  }
-
-  /// True if `value` is an object; keys that are not allowed become errors.
-  bool check_object(const Json& value, const std::string& path, const std::set<std::string>& allowed) {
-    if (!value.is_object()) {
-      error(path, "expected an object, got " + std::string(value.type_name()));
-      return false;
-    }
-    std::string names;
-    for (const auto& name : allowed) names += (names.empty() ? "" : ", ") + name;
-    for (const auto& [key, ignored] : value.items()) {
-      if (!allowed.contains(key)) error(path + "/" + key, "unknown key; expected one of: " + names);
-    }
-    return true;
-  }
-
-  /// A finite number at `key` of an object.
-  double number(const Json& value, const std::string& path, const char* key) {
-    const std::string at = path + "/" + key;
-    if (!value.contains(key)) {
-      error(at, "missing");
-    } else if (!value.at(key).is_number()) {
-      error(at, value.at(key).dump() + ": expected a number");
-    } else if (const double number = value.at(key).get<double>(); !std::isfinite(number)) {
-      error(at, "not finite");
-    } else {
-      return number;
-    }
-    return 0;
-  }
-
-  void read_root(const Json& root) {
-    if (!check_object(root, "", {"format", "blend_time", "grippers"})) return;
-    if (!root.contains("format") || root.at("format") != kScheduleFormat) {
-      error("/format", (root.contains("format") ? root.at("format").dump() : "missing") + "; expected \"" +
-                           kScheduleFormat + "\"");
-      return;
-    }
-    reading_.value.blend_time = number(root, "", "blend_time");
-    if (reading_.value.blend_time < 0)
-      error("/blend_time", exact(reading_.value.blend_time) + ": must not be < 0");
-    if (!root.contains("grippers") || !root.at("grippers").is_array()) {
-      error("/grippers", "expected a list with one entry per gripper");
-      return;
-    }
-    reading_.value.paths.resize(size_t(rig_.count()));
-    if (rig_.driven == Driven::xyz) reading_.value.plane_paths.resize(size_t(rig_.count()));
-    size_t entry = 0;
-    for (const Json& gripper : root.at("grippers"))
-      read_gripper(gripper, "/grippers/" + std::to_string(entry++));
-    report_missing();
-  }
-
-  void report_missing() {
-    std::string missing;
-    for (size_t g = 0; g < reading_.value.paths.size(); ++g) {
-      if (!seen_.contains(int(g))) missing += ' ' + rig_.name(int(g));
-    }
-    if (!missing.empty()) error("/grippers", "no path for gripper" + missing);
-  }
-
-  void read_gripper(const Json& value, const std::string& path) {
-    if (!check_object(value, path, {"gripper", "knots", "plane_knots", "release"})) return;
-    const int gripper = read_name(value, path + "/gripper");
-    std::vector<Knot> knots;
-    std::vector<PlaneKnot> plane_knots;
-    read_list(value, path, "knots",
-              [&](const Json& knot, const std::string& at) { read_knot(knot, at, knots); });
-    if (rig_.driven == Driven::xyz) {
-      read_list(value, path, "plane_knots",
-                [&](const Json& knot, const std::string& at) { read_knot(knot, at, plane_knots); });
-    } else if (value.contains("plane_knots")) {
-      error(path + "/plane_knots", "the rig drives its joints in z only (grippers.driven)");
-    }
-    if (gripper < 0) return;
-    reading_.value.paths[size_t(gripper)] = std::move(knots);
-    if (rig_.driven == Driven::xyz) reading_.value.plane_paths[size_t(gripper)] = std::move(plane_knots);
-    if (value.contains("release")) read_release(value, path, size_t(gripper));
-  }
-
-  void read_release(const Json& value, const std::string& path, size_t gripper) {
-    const double time = number(value, path, "release");
-    if (time < 0) error(path + "/release", exact(time) + ": must not be < 0");
-    reading_.value.release.resize(size_t(rig_.count()));
-    reading_.value.release[gripper] = time;
-  }
-
-  /// A list of at least one knot, each handed to `read` with its path.
-  template <class Read>
-  void read_list(const Json& value, const std::string& path, const char* key, Read read) {
-    const std::string at = path + "/" + key;
-    if (!value.contains(key) || !value.at(key).is_array() || value.at(key).empty()) {
-      return error(at, "expected a list with at least one knot");
-    }
-    size_t index = 0;
-    for (const Json& knot : value.at(key)) read(knot, at + "/" + std::to_string(index++));
-  }
-
-  /// Index of the gripper, or -1.
-  int read_name(const Json& value, const std::string& path) {
-    const std::string allowed = "; expected [i, j] from [1, 1] to [" + std::to_string(rig_.columns) + ", " +
-                                std::to_string(rig_.rows) + "]";
-    const Json name = value.contains("gripper") ? value.at("gripper") : Json();
-    const bool pair =
-        name.is_array() && name.size() == 2 && name[0].is_number_integer() && name[1].is_number_integer();
-    const auto within = [](const Json& number, int count) {
-      return number.get<double>() >= 1 && number.get<double>() <= count;  // as double: no overflow of int
-    };
-    if (!pair || !within(name[0], rig_.columns) || !within(name[1], rig_.rows)) {
-      error(path, name.dump() + allowed);
-      return -1;
-    }
-    const int gripper = rig_.gripper_at({name[0].get<int>(), name[1].get<int>()});
-    if (!seen_.insert(gripper).second) error(path, name.dump() + ": this gripper has a path already");
-    return gripper;
-  }
-
-  void read_knot(const Json& value, const std::string& path, std::vector<Knot>& knots) {
-    if (!check_object(value, path, {"time", "z"})) {
-      knots.push_back({});
-      return;
-    }
-    const Knot knot{number(value, path, "time"), number(value, path, "z")};
-    add_knot(knot, path, knots);
-  }
-
-  void read_knot(const Json& value, const std::string& path, std::vector<PlaneKnot>& knots) {
-    if (!check_object(value, path, {"time", "x", "y"})) {
-      knots.push_back({});
-      return;
-    }
-    const double time = number(value, path, "time"), x = number(value, path, "x"),
-                 y = number(value, path, "y");
-    add_knot(PlaneKnot{time, {x, y}}, path, knots);
-  }
-
-  /// Times increase from 0.
-  template <class AnyKnot>
-  void add_knot(const AnyKnot& knot, const std::string& path, std::vector<AnyKnot>& knots) {
-    if (knots.empty() && knot.time != 0)
-      error(path + "/time", exact(knot.time) + ": the first knot is at time 0");
-    if (!knots.empty() && !(knot.time > knots.back().time)) {
-      error(path + "/time",
-            exact(knot.time) + ": times must increase; the knot before is at " + exact(knots.back().time));
-    }
-    knots.push_back(knot);
-  }
-
-  std::string file_;
-  const RigOptions& rig_;
-  std::set<int> seen_;
-  ScheduleReading reading_;
+/// What one entry of `grippers` says.
+struct GripperEntry {
+  std::optional<std::array<int, 2>> indices;
+  std::vector<Knot> knots;
+  std::vector<PlaneKnot> plane_knots;
+  std::optional<double> release;
 };
+
+struct ScheduleFields {
+  double blend_time = 0;
+  std::vector<GripperEntry> grippers;
+};
+
+Field number(std::string name, double& target, std::string doc, Range range = {}) {
+  return {std::move(name), &target, std::move(doc), Dimension::none, range, true};
+}
+
+template <class Item, class Visit>
+ObjectList required_list(std::string name, std::string doc, std::vector<Item>& items, Visit visit) {
+  ObjectList list = object_list(std::move(name), std::move(doc), items, visit);
+  list.required = true;
+  return list;
+}
+
+void visit_gripper(FieldVisitor& v, GripperEntry& entry, const RigOptions& rig) {
+  v.field({"gripper", &entry.indices, "[i, j], counted from 1", Dimension::none, {}, true});
+  v.list(required_list("knots", "where its joint goes", entry.knots, [&v](Knot& knot) {
+    v.field(number("time", knot.time, "of the knot [s]"));
+    v.field(number("z", knot.z, "height of the joint [m]"));
+  }));
+  v.alternative("grippers.driven", "xyz", rig.driven == Driven::xyz, [&] {
+    v.list(required_list("plane_knots", "where its joint goes in-plane", entry.plane_knots,
+                         [&v](PlaneKnot& knot) {
+                           v.field(number("time", knot.time, "of the knot [s]"));
+                           v.field(number("x", knot.xy.x(), "place of the joint [m]"));
+                           v.field(number("y", knot.xy.y(), "place of the joint [m]"));
+                         }));
+  });
+  v.field({"release", &entry.release, "when its suction ends [s]", Dimension::none, from(0)});
+}
+
+void visit_schedule(FieldVisitor& v, ScheduleFields& fields, const RigOptions& rig) {
+  int format = 0;
+  v.field({"format", choice(format, {kScheduleFormat}), "what this file is", Dimension::none, {}, true});
+  v.field(number("blend_time", fields.blend_time, "over which velocities change [s]", from(0)));
+  v.list(required_list("grippers", "one entry per gripper", fields.grippers,
+                       [&](GripperEntry& entry) { visit_gripper(v, entry, rig); }));
+}
+
+/// Times increase from 0.
+template <class AnyKnot>
+void check_times(const std::vector<AnyKnot>& knots, const std::string& pointer, FieldReader& reader) {
+  for (size_t k = 0; k < knots.size(); ++k) {
+    const std::string place = fmt::format("{}/{}/time", pointer, k);
+    if (!reader.good(place)) continue;
+    if (k == 0 && knots[k].time != 0) reader.fail(place, "the first knot is at time 0");
+    if (k > 0 && !(knots[k].time > knots[k - 1].time)) {
+      reader.fail(place, "times must increase; the knot before is at " + exact(knots[k - 1].time));
+    }
+  }
+}
+
+/// Index of the gripper that an entry is about, if the rig has it.
+std::optional<size_t> gripper_of(const GripperEntry& entry, const std::string& pointer, const RigOptions& rig,
+                                 FieldReader& reader) {
+  if (!reader.good(pointer)) return std::nullopt;
+  const auto [i, j] = *entry.indices;
+  if (i >= 1 && i <= rig.columns && j >= 1 && j <= rig.rows) return size_t(rig.gripper_at({i, j}));
+  reader.fail(pointer, fmt::format("expected [i, j] from [1, 1] to [{}, {}]", rig.columns, rig.rows));
+  return std::nullopt;
+}
+
+/// Puts the entries in the order of the rig, and looks for what no single field shows.
+Schedule to_schedule(ScheduleFields fields, const RigOptions& rig, FieldReader& reader) {
+  const auto count = size_t(rig.count());
+  Schedule schedule;
+  schedule.blend_time = fields.blend_time;
+  schedule.paths.resize(count);
+  if (rig.driven == Driven::xyz) schedule.plane_paths.resize(count);
+  std::set<size_t> seen;
+  for (size_t k = 0; k < fields.grippers.size(); ++k) {
+    GripperEntry& entry = fields.grippers[k];
+    const std::string pointer = fmt::format("/grippers/{}", k);
+    check_times(entry.knots, pointer + "/knots", reader);
+    check_times(entry.plane_knots, pointer + "/plane_knots", reader);
+    const std::optional<size_t> gripper = gripper_of(entry, pointer + "/gripper", rig, reader);
+    if (!gripper) continue;
+    if (!seen.insert(*gripper).second) reader.fail(pointer + "/gripper", "this gripper has a path already");
+    schedule.paths[*gripper] = std::move(entry.knots);
+    if (rig.driven == Driven::xyz) schedule.plane_paths[*gripper] = std::move(entry.plane_knots);
+    if (!entry.release) continue;
+    schedule.release.resize(count);
+    schedule.release[*gripper] = entry.release;
+  }
+  std::string missing;
+  for (size_t g = 0; g < count; ++g) {
+    if (!seen.contains(g)) missing += ' ' + rig.name(int(g));
+  }
+  if (!missing.empty()) reader.add_error("/grippers", "no path for gripper" + missing);
+  return schedule;
+}
 
 /// Knots, ends of their blends and a regular raster: increasing, from 0 to the schedule's end.
 std::vector<double> sample_times(const Schedule& schedule, size_t gripper, double rate) {
@@ -290,7 +207,16 @@ void write_schedule(const std::filesystem::path& file, const Schedule& schedule,
 }
 
 ScheduleReading read_schedule(const std::filesystem::path& file, const RigOptions& rig) {
-  return Reader(file, rig).read();
+  const InputDocument document(file);
+  ScheduleReading reading{{}, document.errors()};
+  if (!document.root().is_object()) return reading;
+  ScheduleFields fields;
+  FieldReader reader(document);
+  reader.read([&](FieldVisitor& visitor) { visit_schedule(visitor, fields, rig); });
+  reading.value = to_schedule(std::move(fields), rig, reader);
+  reading.errors.insert(reading.errors.end(), reader.errors().begin(), reader.errors().end());
+  document.sort(reading.errors);
+  return reading;
 }
 
 void write_schedule_csv(const std::filesystem::path& file, const Schedule& schedule, const RigOptions& rig,

@@ -7,7 +7,7 @@
 
 #include "fem/rig/rig.hpp"
 #include "fem/rig/schedule.hpp"
-#include "planner/case/file.hpp"
+#include "planner/input/error.hpp"
 
 namespace drapeplan {
 
@@ -21,13 +21,13 @@ void write_schedule(const std::filesystem::path& file, const Schedule& schedule,
 
 struct ScheduleReading {
   Schedule value;                  ///< only meaningful without errors
-  std::vector<InputError> errors;  ///< all of them
+  std::vector<InputError> errors;  ///< all of them, in the order of the file
 };
 
 /// Reads a schedule for a rig; grippers may stand in any order. Refused: another format, unknown keys, a
 /// gripper that is missing, doubled or not of the rig, in-plane paths that are missing or not of the rig,
-/// times that do not increase from 0, numbers that are not finite. The rig's velocity limit is not checked
-/// here. Never throws for bad input.
+/// times that do not increase from 0, and all that parse_json_text refuses. The rig's velocity limit is not
+/// checked here. Never throws for bad input.
 ScheduleReading read_schedule(const std::filesystem::path& file, const RigOptions& rig);
 
 /// Writes schedule.csv: `gripper_i,gripper_j,time_s,z_m,vz_m_per_s`, gripper by gripper, times increasing.

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "planner/base/json_text.hpp"
+#include "planner/base/text.hpp"
 
 namespace drapeplan {
 namespace {
@@ -49,14 +50,6 @@ json override_value(const std::string& text) {
   return parsed.faults.empty() ? std::move(parsed.value) : json(text);
 }
 
-bool valid_utf8(const std::string& text) {
-  try {
-    return !json(text).dump().empty();
-  } catch (const json::exception&) {
-    return false;
-  }
-}
-
 /// Sets the value at `parts` of `root`, or takes it away if it is null. Objects on the way are made.
 /// @return what was wrong, or empty.
 std::string set_at(json& root, const std::vector<std::string>& parts, json value) {
@@ -93,7 +86,8 @@ const std::vector<std::string>& keys_that_may_name_files() {
   return keys;
 }
 
-InputDocument::InputDocument(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+InputDocument::InputDocument(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                             const std::vector<std::string>& keys) {
   sources_.push_back({"", file.string(), {}, false});  // so that every pointer has a source
   if (!load(file, "", root_)) return;
   if (!root_.is_object()) {
@@ -101,7 +95,6 @@ InputDocument::InputDocument(const std::filesystem::path& file, const std::vecto
     return;
   }
   // Which file is referred to must be known before something inside it can be overridden.
-  const auto& keys = keys_that_may_name_files();
   const auto names_reference = [&keys](const std::string& text) {
     return std::find(keys.begin(), keys.end(), text.substr(0, text.find('='))) != keys.end();
   };
@@ -161,7 +154,7 @@ void InputDocument::apply(const std::string& override_text) {
   if (equals == std::string::npos || parts.empty() || empty_part || parts.size() > 16) {
     return fail("expected path=value, e.g. friction.coefficient=0.3");
   }
-  if (!valid_utf8(override_text)) return fail("is not valid UTF-8");
+  if (utf8_prefix(override_text) < override_text.size()) return fail("is not valid UTF-8");
   const std::string fault = set_at(root_, parts, override_value(override_text.substr(equals + 1)));
   if (!fault.empty()) return fail(fault);
   std::string pointer;

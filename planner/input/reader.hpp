@@ -20,6 +20,8 @@ class FieldReader : public FieldVisitor {
   [[nodiscard]] std::vector<InputError>& errors() { return errors_; }
   /// Adds an error about the value at `pointer`; the value is shown if there is one.
   void fail(const std::string& pointer, const std::string& message);
+  /// The same without the value.
+  void add_error(const std::string& pointer, std::string message);
   /// Whether the value at `pointer` is there and nothing at or below it is wrong.
   [[nodiscard]] bool good(const std::string& pointer) const;
 
@@ -46,7 +48,6 @@ class FieldReader : public FieldVisitor {
   /// Visits the fields of `object`, then looks for keys that nobody asked for.
   void visit_object(const nlohmann::json& object, const std::string& pointer,
                     const std::function<void()>& visit);
-  void add_error(const std::string& pointer, std::string message);
   void check_keys(const Frame& frame);
   void check_needs(const std::string& name, const std::vector<std::string>& needs);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "planner/base/json_text.hpp"
 #include "planner/base/spelling.hpp"
 
 namespace drapeplan {
@@ -245,7 +246,7 @@ json table_rows(const Table& table) {
 
 std::string value_text(const json& value) {
   constexpr size_t kLongest = 60;
-  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::string text = dump_json(value);
   if (text.size() > kLongest) {
     text.resize(kLongest);
     while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0x80) != 0)

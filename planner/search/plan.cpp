@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fem/core/hash.hpp"
+#include "planner/base/json_text.hpp"
 #include "planner/base/parallel.hpp"
 #include "planner/case/file.hpp"
 
@@ -39,7 +40,7 @@ std::uint64_t case_hash(const Case& definition) {
   // Words, published results and budgets change no evaluation: a search may go on with other ones.
   for (const char* key : {"description", "references", "optimise"}) relevant.erase(key);
   Fnv1a hash;
-  hash.add(std::string_view(relevant.dump()));
+  hash.add(std::string_view(dump_json(relevant)));
   return hash.value();
 }
 

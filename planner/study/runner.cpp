@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "fem/core/hash.hpp"
+#include "planner/base/json_text.hpp"
 #include "planner/base/parallel.hpp"
 #include "planner/base/statistics.hpp"
 #include "planner/case/file.hpp"
@@ -87,9 +88,9 @@ void StudyRunner::read_log() {
     const bool torn = in.eof();
     if (torn) break;
     try {
-      const json entry = json::parse(line);
+      const json entry = checked_json(line);
       known_[entry.at("key").get<std::string>()] = from_json(entry.at("run"));
-    } catch (const json::exception&) {
+    } catch (const std::exception&) {
       throw std::invalid_argument(options_.log.string() + ":" + std::to_string(number) +
                                   ": is no run of a study; remove this line or leave out --resume");
     }
@@ -106,7 +107,7 @@ std::string StudyRunner::key_of(const StudyJob& job) const {
   try {
     json resolved = resolved_case(subject_.with(job.settings));
     for (const char* words : {"description", "references", "optimise"}) resolved.erase(words);
-    text = resolved.dump();
+    text = dump_json(resolved);
   } catch (const std::invalid_argument& error) {
     text = error.what();
   }
@@ -132,8 +133,7 @@ StudyRun StudyRunner::measured(const StudyJob& job) const {
 void StudyRunner::keep(const std::string& key, const StudyRun& run) {
   known_[key] = run;
   if (!file_.is_open()) return;
-  file_ << json{{"key", key}, {"run", to_json(run)}}.dump(-1, ' ', false, json::error_handler_t::replace)
-        << '\n';
+  file_ << dump_json({{"key", key}, {"run", to_json(run)}}) << '\n';
   if (!file_.flush()) throw std::runtime_error(options_.log.string() + ": cannot be written");
 }
 

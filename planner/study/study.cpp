@@ -14,6 +14,7 @@
 
 #include "fem/run/monitor.hpp"
 #include "mapping/error.hpp"
+#include "planner/base/json_text.hpp"
 #include "planner/base/quantity.hpp"
 #include "planner/base/statistics.hpp"
 #include "planner/base/text.hpp"
@@ -212,7 +213,7 @@ Settings StudySubject::changes_of(const std::string& fidelity) const {
     if (base.contains(key) && base[key] == value) continue;
     changes["fem." + key] = value.is_string()         ? value.get<std::string>()
                             : value.is_number_float() ? format_number(value.get<double>())
-                                                      : value.dump();
+                                                      : dump_json(value);
   }
   return changes;
 }

@@ -81,12 +81,17 @@ TEST_F(ScheduleFile, MissingAndDoubledGrippersAreNamed) {
 }
 
 TEST_F(ScheduleFile, GripperThatTheRigDoesNotHaveIsRefused) {
-  for (const std::string name :
-       {"[3, 1]", "[0, 1]", "[1]", "[1.5, 1]", "\"1,1\"", "[99999999999999999999, 1]"}) {
+  const std::pair<std::string, std::string> names[] = {
+      {"[3, 1]", ": [3,1]: expected [i, j] from [1, 1] to [2, 1]"},
+      {"[0, 1]", ": [0,1]: expected [i, j] from [1, 1] to [2, 1]"},
+      {"[1]", ": [1]: expected a pair of whole numbers"},
+      {"[1.5, 1]", "/0: 1.5: expected a whole number"},
+      {"\"1,1\"", ": \"1,1\": expected a pair of whole numbers"},
+      {"[99999999999999999999, 1]", "/0: 1e+20: expected a whole number"}};
+  for (const auto& [name, fault] : names) {
     const std::string other = R"({"gripper": )" + name + R"(, "knots": [{"time": 0, "z": 1}]})";
     const std::string errors = errors_of(with_grippers(kFirst + "," + kSecond + "," + other));
-    EXPECT_NE(errors.find("/grippers/2/gripper: "), std::string::npos) << name << "\n" << errors;
-    EXPECT_NE(errors.find("expected [i, j] from [1, 1] to [2, 1]"), std::string::npos) << errors;
+    EXPECT_TRUE(errors.starts_with("/grippers/2/gripper" + fault)) << name << "\n" << errors;
   }
 }
 
@@ -101,27 +106,26 @@ TEST_F(ScheduleFile, TimesThatDoNotIncreaseFromZeroAreRefused) {
 }
 
 TEST_F(ScheduleFile, AllErrorsComeAtOnce) {
-  const std::string bad =
-      R"({"gripper": [1, 1], "knots": [{"time": 0, "z": "low"}, {"time": 1, "hight": 0}]})";
+  const std::string bad = R"({"gripper": [1, 1], "knots": [{"time": 0, "z": "low"}, {"time": 1, "tme": 0}]})";
   const std::string errors = errors_of(with_grippers(bad + ", 7"));
   EXPECT_EQ(errors,
-            "/grippers/0/knots/0/z: \"low\": expected a number\n"
-            "/grippers/0/knots/1/hight: unknown key; expected one of: time, z\n"
-            "/grippers/0/knots/1/z: missing\n"
-            "/grippers/1: expected an object, got number\n"
+            "/grippers/0/knots/0/z: \"low\": expected a bare number, e.g. 0.5\n"
+            "/grippers/0/knots/1: \"z\" is missing (height of the joint [m])\n"
+            "/grippers/0/knots/1/tme: unknown key \"tme\"; did you mean \"time\"?\n"
+            "/grippers/1: 7: expected an object { ... }\n"
             "/grippers: no path for gripper [2, 1]\n");
 }
 
 TEST_F(ScheduleFile, ForeignFilesAreRefused) {
-  EXPECT_NE(errors_of("{}").find("/format: missing"), std::string::npos);
-  EXPECT_NE(
-      errors_of(R"({"format": "drapeplan-schedule 2"})").find("/format: \"drapeplan-schedule 2\"; expected"),
-      std::string::npos);
-  EXPECT_NE(errors_of("[]").find("expected an object, got array"), std::string::npos);
+  EXPECT_NE(errors_of("{}").find("\"format\" is missing"), std::string::npos);
+  const std::string other = errors_of(R"({"format": "drapeplan-schedule 2"})");
+  EXPECT_TRUE(other.starts_with("/format: \"drapeplan-schedule 2\": unknown word; did you mean")) << other;
+  EXPECT_EQ(errors_of("[]"), ": expected an object { ... }\n");
+  EXPECT_EQ(errors_of("null"), ": null: expected an object { ... }\n");
   EXPECT_NE(errors_of(with_grippers(R"({"gripper": [1, 1], "knots": [{"time": 0, "z": 1e999}]})")), "");
   EXPECT_NE(errors_of(""), "");
   std::filesystem::remove(file_);
-  EXPECT_EQ(read_schedule(file_, rig_).errors.front().message, "cannot be opened");
+  EXPECT_EQ(read_schedule(file_, rig_).errors.front().message, "cannot be read: No such file or directory");
 }
 
 TEST_F(ScheduleFile, BrokenJsonNamesItsLine) {
@@ -129,6 +133,29 @@ TEST_F(ScheduleFile, BrokenJsonNamesItsLine) {
   const ScheduleReading reading = read_schedule(file_, rig_);
   ASSERT_EQ(reading.errors.size(), 1u);
   EXPECT_EQ(reading.errors.front().line, 3);
+}
+
+TEST_F(ScheduleFile, FaultsOfTheTextAreThoseOfEveryInput) {
+  EXPECT_EQ(
+      errors_of(
+          "{\"format\": \"drapeplan-schedule 1\", \"blend_time\": 0.1, \"blend_time\": 5, \"grippers\": [" +
+          kFirst + "," + kSecond + "]}"),
+      "/blend_time: the key \"blend_time\" appears twice in this object; first on line 1\n");
+  EXPECT_NE(errors_of(std::string(65, '[')).find("nested deeper than 64 levels"), std::string::npos);
+  EXPECT_NE(errors_of("\xEF\xBB\xBF" + with_grippers(kFirst + "," + kSecond)).find("byte order mark"),
+            std::string::npos);
+  EXPECT_NE(errors_of(with_grippers(kFirst + "," + kSecond) + '\0' + "x").find("the byte 0x00"),
+            std::string::npos);
+  EXPECT_NE(errors_of(with_grippers(kFirst + ", \"\xe9\"")).find("the byte 0xE9"), std::string::npos);
+}
+
+TEST_F(ScheduleFile, ErrorsHaveTheLineOfTheirValue) {
+  write_text(file_, "{\"format\": \"drapeplan-schedule 1\",\n\"blend_time\": -1,\n\"grippers\": [\n" +
+                        kFirst + ",\n" + R"({"gripper": [2, 1], "knots": [{"time": 0, "z": 1},)" + "\n" +
+                        R"({"time": 0, "z": 1}]})" + "]}");
+  std::vector<int> lines;
+  for (const InputError& error : read_schedule(file_, rig_).errors) lines.push_back(error.line);
+  EXPECT_EQ(lines, (std::vector<int>{2, 6}));
 }
 
 TEST_F(ScheduleFile, NotFiniteOrWrongSizedSchedulesAreNotWritten) {
@@ -162,22 +189,23 @@ TEST_F(ScheduleFile, RoundTripKeepsInPlanePathsAndReleases) {
 
 TEST_F(ScheduleFile, InPlanePathsBelongToRigsThatDriveXAndY) {
   EXPECT_EQ(errors_of(with_grippers(kThird + "}," + kSecond)),
-            "/grippers/0/plane_knots: the rig drives its joints in z only (grippers.driven)\n");
+            "/grippers/0/plane_knots: [{\"time\":0,\"x\":0.1,\"y\":0.2}]: belongs to \"grippers.driven\": "
+            "\"xyz\" only\n");
   EXPECT_THROW(write_schedule(file_, {{{{0, 1}}, {{0, 1}}}, 0.1, {{{0, {0, 0}}}, {{0, {0, 0}}}}}, rig_),
                std::invalid_argument);
   rig_.driven = Driven::xyz;
   EXPECT_EQ(errors_of(with_grippers(kThird + "}," + kSecond)),
-            "/grippers/1/plane_knots: expected a list with at least one knot\n");
+            "/grippers/1: \"plane_knots\" is missing (where its joint goes in-plane)\n");
   EXPECT_THROW(write_schedule(file_, {{{{0, 1}}, {{0, 1}}}, 0.1}, rig_), std::invalid_argument);
   const std::string bad =
       R"({"gripper": [2, 1], "knots": [{"time": 0, "z": 1}], "release": -1,
           "plane_knots": [{"time": 0, "x": "left", "y": 0}, {"time": 0, "x": 1, "y": 2, "z": 3}]})";
   EXPECT_EQ(errors_of(with_grippers(kThird + R"(, "release": "soon"},)" + bad)),
-            "/grippers/0/release: \"soon\": expected a number\n"
-            "/grippers/1/plane_knots/0/x: \"left\": expected a number\n"
-            "/grippers/1/plane_knots/1/z: unknown key; expected one of: time, x, y\n"
-            "/grippers/1/plane_knots/1/time: 0: times must increase; the knot before is at 0\n"
-            "/grippers/1/release: -1: must not be < 0\n");
+            "/grippers/0/release: \"soon\": expected a bare number, e.g. 0.5; allowed: >= 0\n"
+            "/grippers/1/release: -1: out of range; allowed: >= 0\n"
+            "/grippers/1/plane_knots/0/x: \"left\": expected a bare number, e.g. 0.5\n"
+            "/grippers/1/plane_knots/1/z: unknown key \"z\"; known: \"time\", \"x\" or \"y\"\n"
+            "/grippers/1/plane_knots/1/time: 0: times must increase; the knot before is at 0\n");
 }
 
 TEST_F(ScheduleFile, CsvHasColumnsForWhatTheScheduleHasOnly) {

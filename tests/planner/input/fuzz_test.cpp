@@ -1,0 +1,114 @@
+// Random damage to input files: no crash, and every error has its place.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "planner/base/json_text.hpp"
+#include "planner/case/file.hpp"
+#include "planner/drape/schedule_file.hpp"
+
+namespace drapeplan {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::string_literals;
+
+const fs::path kCases = fs::path(DRAPEPLAN_SOURCE_DIR) / "cases";
+
+/// A few changes at random places of a text.
+std::string damaged(std::string text, std::mt19937& random) {
+  static const std::string pieces[] = {
+      "{",     "}",       "[",       "]",        ",",     ":",
+      "\"",    "\\",      "null",    "-",        "1e400", "1e-400",
+      "\xff",  "mm",      "0",       "\n",       "\0"s,   "\xEF\xBB\xBF",
+      "true",  "\\u0000", "\\ud800", "\xC3\xA9", "{}",    "[[[[[[",
+      "1e308", "-1",      "\"x\":",  "\"\"",     "/**/",  "99999999999999999999"};
+  const std::string original = text;
+  for (int changes = 1 + int(random() % 3); changes > 0; --changes) {
+    const size_t at = random() % text.size();
+    switch (random() % 5) {
+      case 0:
+        text[at] = char(random() % 256);
+        break;
+      case 1:
+        text.erase(at, 1 + random() % 20);
+        break;
+      case 2:
+        text.insert(at, pieces[random() % std::size(pieces)]);
+        break;
+      case 3:
+        text.replace(at, 1 + random() % 6, pieces[random() % std::size(pieces)]);
+        break;
+      default:
+        text.insert(at, original.substr(random() % original.size(), random() % 40));
+    }
+    if (text.empty()) text = " ";
+  }
+  return text;
+}
+
+/// Damages `original` so often and hands each file to `read`, which gives the errors that it found.
+template <class Read>
+void damage_and_read(const std::string& original, int rounds, unsigned seed, const Read& read) {
+  const fs::path file = fs::path(testing::TempDir()) / ("fuzz_test_" + std::to_string(::getpid()) + ".json");
+  std::mt19937 random(seed);
+  int refused = 0;
+  for (int round = 0; round < rounds; ++round) {
+    const std::string text = damaged(original, random);
+    std::ofstream(file, std::ios::binary) << text;
+    const std::vector<InputError> errors = read(file);
+    refused += errors.empty() ? 0 : 1;
+    for (const InputError& error : errors) {
+      EXPECT_FALSE(error.file.empty() || error.message.empty()) << text;
+      EXPECT_TRUE(error.line > 0 || !error.path.empty()) << error.text() << "\n" << text;
+    }
+  }
+  fs::remove(file);
+  EXPECT_GT(refused, rounds / 2);
+  EXPECT_LT(refused, rounds);
+}
+
+TEST(DamagedInput, CasesAreReadOrRefusedWithPlaces) {
+  const std::string original =
+      dump_json(resolved_case(read_case(kCases / "flexdraper-quick.json").definition), 1);
+  damage_and_read(original, 600, 20240611, [](const fs::path& file) {
+    const CaseReading reading = read_case(file);
+    if (reading.errors.empty()) dump_json(resolved_case(reading.definition));
+    return reading.errors;
+  });
+}
+
+TEST(DamagedInput, SchedulesAreReadOrRefusedWithPlaces) {
+  RigOptions rig;
+  rig.columns = rig.rows = 2;
+  rig.spacing = 0.1;
+  rig.driven = Driven::xyz;
+  const std::string original = R"({
+  "format": "drapeplan-schedule 1",
+  "blend_time": 0.1,
+  "grippers": [
+    {"gripper": [1, 1], "knots": [{"time": 0, "z": 1}, {"time": 2.5, "z": 0.5}], "plane_knots": [{"time": 0, "x": 0, "y": 1}]},
+    {"gripper": [2, 1], "knots": [{"time": 0, "z": 1}], "plane_knots": [{"time": 0, "x": 0, "y": 1}], "release": 2},
+    {"gripper": [1, 2], "knots": [{"time": 0, "z": 1}], "plane_knots": [{"time": 0, "x": 0, "y": 1}]},
+    {"gripper": [2, 2], "knots": [{"time": 0, "z": 1}],
+     "plane_knots": [{"time": 0, "x": 0, "y": 1}, {"time": 1e-3, "x": -0.25, "y": 1}]}
+  ]
+}
+)";
+  damage_and_read(original, 1400, 7, [&rig](const fs::path& file) {
+    const ScheduleReading reading = read_schedule(file, rig);
+    if (reading.errors.empty()) {
+      write_schedule(file, reading.value, rig);
+      EXPECT_TRUE(read_schedule(file, rig).errors.empty());
+    }
+    return reading.errors;
+  });
+}
+
+}  // namespace
+}  // namespace drapeplan

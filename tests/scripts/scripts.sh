@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# scripts/run finds the case among its arguments; scripts/build configures anew where the cache is another folder's.
+# Usage: scripts.sh DRAPEPLAN SOURCE_DIR JSON_VALUE
+set -uo pipefail
+. "$(dirname "$0")/../planner/cli/kit.sh"
+
+# A checkout whose build does nothing and whose program prints its arguments.
+root=$work/checkout
+mkdir -p "$root/scripts" "$root/build/release" "$work/bin"
+cp "$source/scripts/run" "$root/scripts/"
+printf '#!/bin/sh\n' >"$root/scripts/build"
+cat >"$root/build/release/drapeplan" <<STUB
+#!/bin/sh
+[ "\$2" = --help ] && [ \$# = 2 ] && exec "$program" "\$@"
+echo "\$@"
+STUB
+chmod +x "$root/scripts/build" "$root/build/release/drapeplan"
+default=$root/cases/flexdraper-5x5.json
+
+runs() { same "$("$root/scripts/run" "${@:2}")" "plan $1" "run ${*:2}"; }  # runs WANTED ARGUMENTS...
+runs "$default"
+runs "$default --quiet --out o" --quiet --out o
+runs "$default --set material=other.json" --set material=other.json
+runs "$default --out x.json" --out x.json
+runs "$default --out=x.json --json" --out=x.json --json
+runs "$default --threads 2 --seed 3 --resume" --threads 2 --seed 3 --resume
+runs "$default --set ply.angle=3 --set -x" --set ply.angle=3 --set -x
+runs "a.json" a.json
+runs "--quiet mine" --quiet mine
+runs "--out o a b --set x=y" --out o a b --set x=y
+runs "--json -- -mine" --json -- -mine
+runs "$default --json --" --json --
+runs "$default --out --" --out --
+runs "--quiet --help" --quiet --help
+
+# CMake is played by a script that notes what it is called with.
+cp "$source/scripts/build" "$root/scripts/"
+printf '#!/bin/sh\necho "$@" >>"%s"\n' "$work/calls" >"$work/bin/cmake"
+printf '#!/bin/sh\nprintf installed\n' >"$work/bin/dpkg-query"
+chmod +x "$work/bin/cmake" "$work/bin/dpkg-query"
+cache() { printf 'CMAKE_CACHEFILE_DIR:INTERNAL=%s\nCMAKE_HOME_DIRECTORY:INTERNAL=%s\n' "$2" "$1" >"$root/build/release/CMakeCache.txt"; }
+# configures FRESH WHAT: whether scripts/build asks for a fresh cache.
+configures() {
+  rm -f "$work/calls"
+  PATH=$work/bin:$PATH "$root/scripts/build" ci target 2>"$work/stderr" || fail "$2: $(cat "$work/stderr")"
+  same "$(head -n 1 "$work/calls")" "--preset ci$1" "$2"
+  same "$(sed -n 2p "$work/calls")" "--build --preset ci --target target" "$2"
+}
+configures "" "no cache"
+cache "$root" "$root/build/release"
+configures "" "its own cache"
+cache "$work/elsewhere" "$work/elsewhere/build/release"
+configures " --fresh" "the cache of a checkout that was moved"
+cache "$source" "$source/build/release"
+configures " --fresh" "the cache of another checkout"
+cache "$root" "$root/build/debug"
+configures " --fresh" "the cache of another folder of this checkout"
+ln -s "$root" "$work/link"
+cache "$work/link" "$work/link/build/release"
+configures "" "its own cache by way of a link"
+finish 25
