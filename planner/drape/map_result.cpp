@@ -1,9 +1,10 @@
 #include "planner/drape/map_result.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 namespace drapeplan {
@@ -40,7 +41,6 @@ MapResult map_case(const Case& definition) {
 std::vector<std::string> map_warnings(const Case& definition, const MapResult& map) {
   constexpr double kMisplaced = 0.010;  // [m]; tilt and joint offset account for less
   std::vector<std::string> warnings;
-  char text[300];
   if (!map.net.converged)
     warnings.emplace_back("the mapping of a cell has not converged: its shear is not exact");
   const Extent& extent = definition.mold->extent();
@@ -50,16 +50,14 @@ std::vector<std::string> map_warnings(const Case& definition, const MapResult& m
     beyond = std::max({beyond, (extent.lower - xy).maxCoeff(), (xy - extent.upper).maxCoeff()});
   }
   if (beyond > 0) {
-    std::snprintf(text, sizeof text,
-                  "the mapped ply reaches %.1f mm beyond mold.extent; the mold's formula goes on there",
-                  1e3 * beyond);
-    warnings.emplace_back(text);
+    warnings.push_back(
+        fmt::format("the mapped ply reaches {:.1f} mm beyond mold.extent; the mold's formula goes on there",
+                    1e3 * beyond));
   }
   if (map.max_shear_deg > definition.score.locking_angle_deg) {
-    std::snprintf(text, sizeof text,
-                  "the mapping needs %.1f deg of shear, more than score.locking_angle (%.1f deg)",
-                  map.max_shear_deg, definition.score.locking_angle_deg);
-    warnings.emplace_back(text);
+    warnings.push_back(
+        fmt::format("the mapping needs {:.1f} deg of shear, more than score.locking_angle ({:.1f} deg)",
+                    map.max_shear_deg, definition.score.locking_angle_deg));
   }
   if (definition.grippers && definition.grippers->fixed) {
     const int index = definition.grippers->gripper_at(*definition.grippers->fixed);
@@ -67,11 +65,10 @@ std::vector<std::string> map_warnings(const Case& definition, const MapResult& m
                                                                 definition.grippers->place(index);
     const double apart = (map.targets[size_t(index)].head<2>() - place).norm();
     if (apart > kMisplaced) {
-      std::snprintf(text, sizeof text,
-                    "the fixed gripper %s stands %.1f mm beside its target in plan: check ply.position and "
-                    "mapping.start",
-                    definition.grippers->name(index).c_str(), 1e3 * apart);
-      warnings.emplace_back(text);
+      warnings.push_back(
+          fmt::format("the fixed gripper {} stands {:.1f} mm beside its target in plan: check ply.position "
+                      "and mapping.start",
+                      definition.grippers->name(index), 1e3 * apart));
     }
   }
   return warnings;
