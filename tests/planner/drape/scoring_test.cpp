@@ -71,7 +71,7 @@ TEST(Scoring, GapIsMeasuredAlongTheNormalOfAnInclinedPlane) {
   const Snapshot end = snapshot(mesh, [&](double u, double v) -> Vector3d {
     return mold.point(u, v) + normal * (gap + 0.5 * kThickness);
   });
-  for (const double gap : nodal_gaps(end, mold, kThickness)) EXPECT_LE(std::abs(gap - gap), 1e-12);
+  for (const double measured : nodal_gaps(end, mold, kThickness)) EXPECT_LE(std::abs(measured - gap), 1e-12);
 }
 
 TEST(Scoring, PenetrationCountsAsContact) {
