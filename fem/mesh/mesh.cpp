@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "fem/mesh/grid.hpp"
 #include "fem/mesh/lines.hpp"
 #include "mapping/error.hpp"
 
@@ -48,21 +49,11 @@ Mesh rectangle_mesh(double width, double height, double mesh_size, const std::ve
     throw WrongInput("rectangle_mesh: lengths must be positive");
   const std::vector<double> x = mesh_lines(-0.5 * width, 0.5 * width, mesh_size, u);
   const std::vector<double> y = mesh_lines(-0.5 * height, 0.5 * height, mesh_size, v);
-  const int nx = int(x.size()) - 1, ny = int(y.size()) - 1;
-  const auto node = [nx](int i, int j) { return i + j * (nx + 1); };
-  Mesh mesh;
+  std::vector<Eigen::Vector2d> rest;
   for (const double yj : y) {
-    for (const double xi : x) mesh.rest.emplace_back(xi, yj);
+    for (const double xi : x) rest.emplace_back(xi, yj);
   }
-  for (int j = 0; j < ny; ++j) {
-    for (int i = 0; i < nx; ++i)
-      mesh.quads.push_back({node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)});
-  }
-  for (int i = 0; i < nx; ++i) mesh.outline.push_back(node(i, 0));
-  for (int j = 0; j < ny; ++j) mesh.outline.push_back(node(nx, j));
-  for (int i = nx; i > 0; --i) mesh.outline.push_back(node(i, ny));
-  for (int j = ny; j > 0; --j) mesh.outline.push_back(node(0, j));
-  return mesh;
+  return grid_mesh(int(x.size()) - 1, int(y.size()) - 1, std::move(rest));
 }
 
 std::vector<double> nodal_areas(const Mesh& mesh) {

@@ -75,7 +75,7 @@ double kendall(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 NoiseEstimate difference_noise(const std::vector<double>& values) {
-  constexpr double kAgreement = 4;  // of three levels, as in the article
+  constexpr double kAgreement = 4;  // of three levels, as in More and Wild (2011)
   if (values.size() < 4) throw std::invalid_argument("difference_noise: needs at least four values");
   std::vector<double> differences = values, level_noise;
   std::vector<char> changes_sign;

@@ -30,7 +30,7 @@ struct NoiseEstimate {
 
 /// ECnoise (J. J. More and S. M. Wild, "Estimating computational noise", SIAM J. Sci. Comput. 33, 2011): k-th
 /// differences remove what is smooth, and (k!)^2 / (2k)! of their mean square is the variance of the noise.
-/// @param values  at least four (seven in the article), finite.
+/// @param values  at least four (seven in their paper), finite.
 /// @throws std::invalid_argument for fewer.
 NoiseEstimate difference_noise(const std::vector<double>& values);
 

@@ -9,10 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "planner/base/json_text.hpp"
 #include "planner/base/text.hpp"
 #include "planner/cli/streams.hpp"
-
-#include "planner/base/json_text.hpp"
 
 namespace drapeplan {
 namespace {

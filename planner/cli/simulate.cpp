@@ -197,15 +197,9 @@ Schedule schedule_of(const DrapeProblem& problem, const std::string& name) {
 std::string score_line(const Drape& drape) {
   const Score& score = drape.score;
   if (!score.valid) return "no score: " + score.reason + "\n";
-  return fmt::format(
-      "gap max {:.2f} mm, r.m.s. {:.2f} mm; boundary offset max {:.2f} mm, r.m.s. {:.2f} mm; shear {:.1f} "
-      "deg; "
-      "fibre tension {:.2f} %, compression {:.2f} %; objective {:.3f}\n"
-      "actuator force max {:.1f} N; penetration {:.3f} mm; kinetic over internal energy at most {:.2g}\n",
-      1e3 * score.max_gap, 1e3 * score.rms_gap, 1e3 * score.max_boundary_offset,
-      1e3 * score.rms_boundary_offset, score.max_shear_deg, 1e2 * score.max_fibre_strain,
-      1e2 * score.max_fibre_compression, score.objective, score.max_actuator_force,
-      1e3 * drape.run.summary.largest_penetration, drape.run.summary.largest_kinetic_ratio);
+  return fmt::format("{}\npenetration {:.3f} mm; kinetic over internal energy at most {:.2g}\n",
+                     score_text(score), 1e3 * drape.run.summary.largest_penetration,
+                     drape.run.summary.largest_kinetic_ratio);
 }
 
 /// The files of a drape beside result.json and resolved.json.

@@ -170,8 +170,8 @@ Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, i
   }
   // A gap is never negative: a ply that ended inside the mold would look perfectly draped.
   if (drape.run.summary.largest_penetration > case_.material.thickness) {
-    drape.score = failed_score("the ply came " + std::to_string(1e3 * drape.run.summary.largest_penetration) +
-                               " mm inside the mold: more than its thickness");
+    drape.score = failed_score(fmt::format("the ply came {:f} mm inside the mold: more than its thickness",
+                                           1e3 * drape.run.summary.largest_penetration));
     return drape;
   }
   const RunRecord& record = drape.run.state.record;

@@ -1,10 +1,11 @@
-// Names of what scores and reports hold, stated once for the evaluation log and for result files.
+// Scores and summaries as JSON; the names of what a summary holds, stated once for writing and reading.
 #pragma once
+
+#include <fmt/format.h>
 
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -12,22 +13,6 @@
 #include "planner/drape/score.hpp"
 
 namespace drapeplan {
-
-/// Calls visit(key, field) for every number of a score: one list for writing and reading.
-template <class ScoreType, class Visit>
-void for_each_part(ScoreType& s, const Visit& visit) {
-  visit("max_gap", s.max_gap);
-  visit("rms_gap", s.rms_gap);
-  visit("wrinkled_area", s.wrinkled_area);
-  visit("max_boundary_offset", s.max_boundary_offset);
-  visit("rms_boundary_offset", s.rms_boundary_offset);
-  visit("max_shear_deg", s.max_shear_deg);
-  visit("max_fibre_strain", s.max_fibre_strain);
-  visit("max_fibre_compression", s.max_fibre_compression);
-  visit("max_actuator_force", s.max_actuator_force);
-  visit("duration", s.duration);
-  visit("objective", s.objective);
-}
 
 /// Calls visit(key, field, part) for every energy of a summary. `part` points to the member of SummaryParts
 /// that says whether the scene has any of it; null: every scene does.
@@ -70,16 +55,15 @@ inline nlohmann::json finite(double value) {
 }
 
 inline std::string hex(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-  return text;
+  return fmt::format("{:016x}", value);
 }
 
 inline nlohmann::json score_json(const Score& score) {
   nlohmann::json out;
-  for_each_part(score, [&](const char* key, double value) {
-    out[key] = score.valid ? finite(value) : nlohmann::json(nullptr);  // a failed run has no parts
-  });
+  for (const ScorePart& part : kScoreParts) {
+    // A failed run has no parts.
+    out[part.key] = score.valid ? finite(score.*part.value) : nlohmann::json(nullptr);
+  }
   out["objective"] = finite(score.objective);
   out["valid"] = score.valid;
   if (!score.valid) out["reason"] = score.reason;

@@ -1,5 +1,7 @@
 #include "planner/drape/scoring.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -138,9 +140,9 @@ void check_sizes(const Mesh& mesh, const Snapshot& end, const Points& boundary) 
   const size_t nodes = mesh.rest.size(), elements = mesh.quads.size();
   if (end.position.size() != nodes || end.director.size() != nodes || end.shear.size() != elements ||
       end.warp_strain.size() != elements || end.weft_strain.size() != elements) {
-    throw std::invalid_argument("score_drape: the snapshot has " + std::to_string(end.position.size()) +
-                                " nodes and " + std::to_string(end.shear.size()) + " elements, the mesh " +
-                                std::to_string(nodes) + " and " + std::to_string(elements));
+    throw std::invalid_argument(
+        fmt::format("score_drape: the snapshot has {} nodes and {} elements, the mesh {} and {}",
+                    end.position.size(), end.shear.size(), nodes, elements));
   }
   if (elements == 0 || mesh.outline.size() < 3 || boundary.size() < 2) {
     throw std::invalid_argument("score_drape: the ply or the prescribed boundary is empty");
@@ -157,9 +159,7 @@ std::optional<std::string> not_finite(const Snapshot& end, const RunExtremes& ru
     return std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }) -
            values.begin();
   };
-  const auto name = [](const char* what, auto place) {
-    return std::string(what) + " " + std::to_string(place);
-  };
+  const auto name = [](const char* what, auto place) { return fmt::format("{} {}", what, place); };
   if (const auto k = bad_point(end.position); size_t(k) < end.position.size())
     return name("position of node", k);
   if (const auto k = bad_point(end.director); size_t(k) < end.director.size())
@@ -249,7 +249,7 @@ Score score_drape(const Mesh& mesh, const Snapshot& end, const Mold& mold,
   Score score;
   size_t node = 0;
   if (!score_gap(mesh, end, mold, thickness, options, score, node)) {
-    return failed_score("the mold is not defined below node " + std::to_string(node));
+    return failed_score(fmt::format("the mold is not defined below node {}", node));
   }
   const BoundaryOffset offset = boundary_offset(ply_edge(mesh, end, thickness), prescribed_boundary);
   score.max_boundary_offset = offset.max;

@@ -1,8 +1,9 @@
 #include "planner/drape/strategy.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 namespace drapeplan {
@@ -13,7 +14,7 @@ constexpr double kTicksPerSecond =
 constexpr double kTicksPerMetre = 1e6;  // heights are multiples of 1 um
 constexpr double kLowestPreshape =
     0.25;  // of the frame's height: below it the ply touches the mold in the preshape
-constexpr double kStrokeFactor = 4;  // largest change of all durations together in the smaller family
+constexpr double kStrokeFactor = 4;  // largest change of all durations together around a base
 
 double round_time(double t) {
   return std::round(t * kTicksPerSecond) / kTicksPerSecond;
@@ -164,20 +165,16 @@ std::string stretched(const SequenceFrame& frame, const Strokes& strokes) {
   const auto count = std::count_if(strokes.duration.begin(), strokes.duration.end(),
                                    [&](double d) { return d < fastest - 1 / kTicksPerSecond; });
   std::string text;
-  char line[160];
   if (preshaped > frame.options.preshape_duration + 1 / kTicksPerSecond) {
-    std::snprintf(line, sizeof line, "the preshape takes %.3f s instead of %.3f s", preshaped,
-                  frame.options.preshape_duration);
-    text += line;
+    text = fmt::format("the preshape takes {:.3f} s instead of {:.3f} s", preshaped,
+                       frame.options.preshape_duration);
   }
   if (count > 0) {
-    std::snprintf(line, sizeof line, "%s%d strokes take %.3f s instead of less", text.empty() ? "" : "; ",
-                  int(count), fastest);
-    text += line;
+    text +=
+        fmt::format("{}{} strokes take {:.3f} s instead of less", text.empty() ? "" : "; ", count, fastest);
   }
   if (text.empty()) return text;
-  std::snprintf(line, sizeof line, " at the largest velocity of %.3f m/s", frame.rig.max_velocity);
-  return text + line;
+  return text + fmt::format(" at the largest velocity of {:.3f} m/s", frame.rig.max_velocity);
 }
 
 WaveFamily::WaveFamily(SequenceFrame frame) : frame_(std::move(frame)) {
@@ -214,12 +211,11 @@ Eigen::VectorXd WaveFamily::encode(const WaveParameters& wave) const {
   return x;
 }
 
-GripperFamily::GripperFamily(SequenceFrame frame, Strokes base, bool own_strokes)
-    : frame_(std::move(frame)), base_(std::move(base)), own_strokes_(own_strokes) {}
+GripperFamily::GripperFamily(SequenceFrame frame, Strokes base)
+    : frame_(std::move(frame)), base_(std::move(base)) {}
 
 int GripperFamily::dimension() const {
-  const int n = int(base_.start.size());
-  return own_strokes_ ? 2 * n : n + 1;
+  return int(base_.start.size()) + 1;
 }
 
 Strokes GripperFamily::decode(const Eigen::VectorXd& x) const {
@@ -227,12 +223,8 @@ Strokes GripperFamily::decode(const Eigen::VectorXd& x) const {
   Strokes strokes = base_;
   for (Eigen::Index g = 0; g < n; ++g) {
     double& duration = strokes.duration[size_t(g)];
-    if (own_strokes_) {
-      duration = logarithmic(x[n + g], frame_.shortest_stroke, frame_.longest_sequence);
-    } else {
-      duration *= logarithmic(x[n], 1 / kStrokeFactor, kStrokeFactor);
-      duration = std::clamp(duration, frame_.shortest_stroke, frame_.longest_sequence);
-    }
+    duration *= logarithmic(x[n], 1 / kStrokeFactor, kStrokeFactor);
+    duration = std::clamp(duration, frame_.shortest_stroke, frame_.longest_sequence);
     strokes.start[size_t(g)] = std::min(linear(x[g], 0, frame_.longest_sequence - frame_.shortest_stroke),
                                         frame_.longest_sequence - duration);
   }
@@ -243,14 +235,9 @@ Strokes GripperFamily::decode(const Eigen::VectorXd& x) const {
 Eigen::VectorXd GripperFamily::encode_base() const {
   const auto n = Eigen::Index(base_.start.size());
   Eigen::VectorXd x(dimension());
-  for (Eigen::Index g = 0; g < n; ++g) {
+  for (Eigen::Index g = 0; g < n; ++g)
     x[g] = inverse_linear(base_.start[size_t(g)], 0, frame_.longest_sequence - frame_.shortest_stroke);
-    if (own_strokes_) {
-      x[n + g] =
-          inverse_logarithmic(base_.duration[size_t(g)], frame_.shortest_stroke, frame_.longest_sequence);
-    }
-  }
-  if (!own_strokes_) x[n] = 0.5;  // the logarithmic middle: a factor of 1
+  x[n] = 0.5;  // the logarithmic middle: a factor of 1
   return x;
 }
 

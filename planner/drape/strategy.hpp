@@ -89,16 +89,13 @@ class WaveFamily {
   double longest_delay_ = 0;  ///< [s]
 };
 
-/// Free strokes over [0, 1]^n around a base whose preshape height is kept. Two sizes of the family:
-///   2 x grippers      own strokes: starts, linear from 0 to longest_sequence - shortest_stroke, then
-///   durations,
-///                     logarithmic from shortest_stroke to longest_sequence
-///   grippers + 1      starts, then one factor on all durations of the base, logarithmic from 1/4 to 4
-/// Starts are shifted to the gauge; what would end after longest_sequence starts earlier. Coordinates outside
-/// [0, 1] are clipped.
+/// Free starts over [0, 1]^(grippers + 1) around a base whose preshape height is kept: one start per gripper,
+/// linear from 0 to longest_sequence - shortest_stroke, then one factor on all durations of the base,
+/// logarithmic from 1/4 to 4. Starts are shifted to the gauge; what would end after longest_sequence starts
+/// earlier. Coordinates outside [0, 1] are clipped.
 class GripperFamily {
  public:
-  GripperFamily(SequenceFrame frame, Strokes base, bool own_strokes = true);
+  GripperFamily(SequenceFrame frame, Strokes base);
   [[nodiscard]] int dimension() const;
   [[nodiscard]] Strokes decode(const Eigen::VectorXd& x) const;
   /// The base's own coordinates: where a search around it starts.
@@ -107,7 +104,6 @@ class GripperFamily {
  private:
   SequenceFrame frame_;
   Strokes base_;
-  bool own_strokes_;
 };
 
 }  // namespace drapeplan

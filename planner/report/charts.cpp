@@ -1,5 +1,7 @@
 #include "planner/report/charts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -312,8 +314,8 @@ Chart height_chart(const Schedule& schedule, const RigOptions& rig, const std::s
 
 std::string schedule_picture(const Schedule& schedule, const RigOptions& rig, const std::string& title) {
   if (rig.count() < 1 || int(schedule.paths.size()) != rig.count()) {
-    throw std::invalid_argument("schedule_picture: " + std::to_string(schedule.paths.size()) + " paths for " +
-                                std::to_string(rig.count()) + " grippers");
+    throw std::invalid_argument(
+        fmt::format("schedule_picture: {} paths for {} grippers", schedule.paths.size(), rig.count()));
   }
   constexpr double kLeft = 62, kTop = 74, kPitch = 18, kBars = 560, kGap = 60, kCell = 38;
   const std::vector<Row> rows = sequence(schedule);

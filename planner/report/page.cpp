@@ -1,10 +1,12 @@
 #include "planner/report/page.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
+#include <sstream>
 
 #include "planner/base/text.hpp"
 
@@ -36,59 +38,37 @@ code { font: .92em ui-monospace, "DejaVu Sans Mono", monospace; }
 @media print { body { padding: 0; } h2, figure, tr { break-inside: avoid; } }
 )css";
 
-/// A column of the table of scores.
-struct Column {
-  const char* name;
-  const char* unit;
-  double Score::*part;
-  double factor;  ///< from SI to the unit shown
-  int decimals;
-  bool compared;  ///< lower is better
-};
+using BestTexts = std::array<std::optional<std::string>, kScoreParts.size()>;
 
-constexpr std::array kColumns{
-    Column{"largest gap", "mm", &Score::max_gap, 1e3, 2, true},
-    Column{"gap, r.m.s.", "mm", &Score::rms_gap, 1e3, 2, true},
-    Column{"wrinkled area", "cm\u00b2", &Score::wrinkled_area, 1e4, 1, true},
-    Column{"largest boundary offset", "mm", &Score::max_boundary_offset, 1e3, 2, true},
-    Column{"boundary offset, r.m.s.", "mm", &Score::rms_boundary_offset, 1e3, 2, true},
-    Column{"largest shear", "\u00b0", &Score::max_shear_deg, 1, 1, false},
-    Column{"largest fibre tension", "%", &Score::max_fibre_strain, 100, 3, false},
-    Column{"largest actuator force", "N", &Score::max_actuator_force, 1, 1, false},
-    Column{"duration", "s", &Score::duration, 1, 1, false},
-    Column{"objective", "", &Score::objective, 1, 2, true},
-};
-
-bool counts(const ReportRow& row, const Column& column) {
-  return row.score.valid && !row.reference && std::isfinite(row.score.*column.part);
+bool counts(const ReportRow& row, const ScorePart& part) {
+  return row.score.valid && !row.reference && std::isfinite(row.score.*part.value);
 }
 
-/// Smallest value of a column as it is shown; nothing if all rows that can be compared show the same.
-std::optional<std::string> best_text(const std::vector<ReportRow>& rows, const Column& column) {
-  if (!column.compared) return std::nullopt;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double best = kInfinity, worst = -kInfinity;
+/// Smallest value of a part as it is shown; nothing if all rows that can be compared show the same.
+std::optional<std::string> best_text(const std::vector<ReportRow>& rows, const ScorePart& part) {
+  if (!part.compared) return std::nullopt;
+  const ReportRow *best = nullptr, *worst = nullptr;
   for (const ReportRow& row : rows) {
-    if (!counts(row, column)) continue;
-    best = std::min(best, row.score.*column.part);
-    worst = std::max(worst, row.score.*column.part);
+    if (!counts(row, part)) continue;
+    if (best == nullptr || row.score.*part.value < best->score.*part.value) best = &row;
+    if (worst == nullptr || row.score.*part.value > worst->score.*part.value) worst = &row;
   }
-  const std::string text = fixed(column.factor * best, column.decimals);
-  if (text == fixed(column.factor * worst, column.decimals)) return std::nullopt;
+  if (best == nullptr) return std::nullopt;
+  const std::string text = value_text(part, best->score);
+  if (text == value_text(part, worst->score)) return std::nullopt;
   return text;
 }
 
-std::string score_row(const ReportRow& row,
-                      const std::array<std::optional<std::string>, kColumns.size()>& best) {
+std::string score_row(const ReportRow& row, const BestTexts& best) {
   std::string text = row.reference ? "<tr class=\"reference\">" : "<tr>";
-  text += "<td>" + escape_markup(row.name) + "</td>";
+  text += fmt::format("<td>{}</td>", escape_markup(row.name));
   if (!row.score.valid && !row.reference) {
-    return text + "<td class=\"failed\" colspan=\"" + std::to_string(kColumns.size()) +
-           "\">failed: " + escape_markup(row.score.reason) + "</td></tr>\n";
+    return text + fmt::format("<td class=\"failed\" colspan=\"{}\">failed: {}</td></tr>\n",
+                              kScoreParts.size(), escape_markup(row.score.reason));
   }
-  for (size_t k = 0; k < kColumns.size(); ++k) {
-    const std::string value = fixed(kColumns[k].factor * row.score.*kColumns[k].part, kColumns[k].decimals);
-    const bool stands_out = counts(row, kColumns[k]) && best[k] == value;
+  for (size_t k = 0; k < kScoreParts.size(); ++k) {
+    const std::string value = value_text(kScoreParts[k], row.score);
+    const bool stands_out = counts(row, kScoreParts[k]) && best[k] == value;
     text += (stands_out ? "<td class=\"best\">" : "<td>") + value + "</td>";
   }
   return text + "</tr>\n";
@@ -96,27 +76,26 @@ std::string score_row(const ReportRow& row,
 
 std::string score_table(const std::vector<ReportRow>& rows) {
   if (rows.empty()) return "";
-  std::array<std::optional<std::string>, kColumns.size()> best;
+  BestTexts best;
   std::string text = "<h2>Scores</h2>\n<div class=\"wide\"><table>\n<thead><tr><th>sequence</th>";
-  for (size_t k = 0; k < kColumns.size(); ++k) {
-    best[k] = best_text(rows, kColumns[k]);
-    text += std::string("<th>") + kColumns[k].name + "<small>" + kColumns[k].unit + "</small></th>";
+  for (size_t k = 0; k < kScoreParts.size(); ++k) {
+    best[k] = best_text(rows, kScoreParts[k]);
+    text += fmt::format("<th>{}<small>{}</small></th>", kScoreParts[k].label, kScoreParts[k].unit);
   }
   text += "</tr></thead>\n<tbody>\n";
   for (const ReportRow& row : rows) text += score_row(row, best);
   return text +
          "</tbody>\n<caption>Lower is better; the best value of a column stands out. Gap: between the "
-         "ply\u2019s "
-         "underside and the mold at the end. Wrinkled area: gap above the threshold where the ply does not "
-         "bridge a "
-         "hollow. Boundary offset: between the ply\u2019s edge and the prescribed boundary. Rows in italics "
-         "are "
-         "reported elsewhere and are not compared.</caption>\n</table></div>\n";
+         "ply\u2019s underside and the mold at the end. Wrinkled area: gap above the threshold where the ply "
+         "does not bridge a hollow. Boundary offset: between the ply\u2019s edge and the prescribed "
+         "boundary. "
+         "Rows in italics are reported elsewhere and are not compared.</caption>\n</table></div>\n";
 }
 
 std::string paragraph(const std::string& text, const std::string& style = "") {
   if (text.empty()) return "";
-  return (style.empty() ? "<p>" : "<p class=\"" + style + "\">") + escape_markup(text) + "</p>\n";
+  const std::string opening = style.empty() ? "<p>" : fmt::format("<p class=\"{}\">", style);
+  return fmt::format("{}{}</p>\n", opening, escape_markup(text));
 }
 
 std::string pairs(const std::string& title, const std::vector<std::pair<std::string, std::string>>& entries,
@@ -125,8 +104,8 @@ std::string pairs(const std::string& title, const std::vector<std::pair<std::str
   std::string text = "<h2>" + title + "</h2>\n<table class=\"pairs\">\n";
   for (const auto& [name, value] : entries) {
     const std::string escaped = escape_markup(name);
-    text += "<tr><td>" + (code ? "<code>" + escaped + "</code>" : escaped) + "</td><td>" +
-            escape_markup(value) + "</td></tr>\n";
+    text += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n",
+                        code ? fmt::format("<code>{}</code>", escaped) : escaped, escape_markup(value));
   }
   return text + "</table>\n";
 }
@@ -135,39 +114,81 @@ std::string file_list(const std::vector<std::pair<std::string, std::string>>& fi
   if (files.empty()) return "";
   std::string text = "<h2>Files of this run</h2>\n<table class=\"pairs\">\n";
   for (const auto& [name, what] : files) {
-    const std::string escaped = escape_markup(name);
     // "./" keeps a name with a colon from being read as a scheme.
-    text += "<tr><td><a href=\"./" + escaped + "\"><code>" + escaped + "</code></a></td><td>" +
-            escape_markup(what) + "</td></tr>\n";
+    text += fmt::format("<tr><td><a href=\"./{0}\"><code>{0}</code></a></td><td>{1}</td></tr>\n",
+                        escape_markup(name), escape_markup(what));
   }
   return text + "</table>\n";
+}
+
+/// Words on lines of at most `width` characters, as far as no word is longer.
+std::vector<std::string> wrapped(const std::string& words, size_t width) {
+  std::vector<std::string> lines;
+  std::istringstream stream(words);
+  for (std::string word; stream >> word;) {
+    if (lines.empty() || lines.back().size() + 1 + word.size() > width)
+      lines.push_back(word);
+    else
+      lines.back() += " " + word;
+  }
+  return lines;
 }
 
 }  // namespace
 
 std::string html_report(const PlanReport& report) {
-  const std::string title = escape_markup(report.title);
-  std::string page =
+  std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-      title + " \u2013 draping plan</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<h1>" + title +
-      "</h1>\n";
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<title>{0} \u2013 draping plan</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
+      escape_markup(report.title), kStyle);
   page += paragraph(report.description, "soft") + paragraph(report.verdict, "lead");
   if (!report.reach.empty()) page += "<h2>What the rig can reach</h2>\n" + paragraph(report.reach);
   page += score_table(report.rows);
   if (!report.figures.empty()) page += "<h2>Pictures</h2>\n";
   for (const ReportFigure& figure : report.figures) {
-    page += "<figure>\n<div class=\"wide\">" + figure.svg + "</div>\n<figcaption>" +
-            escape_markup(figure.caption) + "</figcaption>\n</figure>\n";
+    page += fmt::format("<figure>\n<div class=\"wide\">{}</div>\n<figcaption>{}</figcaption>\n</figure>\n",
+                        figure.svg, escape_markup(figure.caption));
   }
   if (!report.notes.empty()) {
     page += "<h2>To keep in mind</h2>\n<ul>\n";
-    for (const std::string& note : report.notes) page += "<li>" + escape_markup(note) + "</li>\n";
+    for (const std::string& note : report.notes) page += fmt::format("<li>{}</li>\n", escape_markup(note));
     page += "</ul>\n";
   }
   page += pairs("The run", report.facts, false) + pairs("Settings", report.settings, true) +
           file_list(report.files);
   return page + "</body>\n</html>\n";
+}
+
+std::string console_table(const std::vector<ReportRow>& rows) {
+  constexpr int kName = 28, kWidth = 10;
+  std::vector<std::vector<std::string>> heads;  // of each column, the unit below the label
+  size_t lines = 0;
+  for (const ScorePart& part : kScoreParts) {
+    if (!part.compared) continue;
+    heads.push_back(wrapped(part.label, kWidth));
+    heads.back().push_back(fmt::format("[{}]", *part.unit == '\0' ? "-" : part.unit));
+    lines = std::max(lines, heads.back().size());
+  }
+  std::string text;
+  for (size_t line = 0; line < lines; ++line) {
+    text += std::string(kName, ' ');
+    for (const std::vector<std::string>& head : heads) {
+      const size_t above = lines - head.size();  // empty lines
+      text += fmt::format(" {:>{}}", line < above ? "" : head[line - above], kWidth);
+    }
+    text += "\n";
+  }
+  for (const ReportRow& row : rows) {
+    text += fmt::format("{:<{}.{}}", row.name, kName, kName);
+    if (!row.score.valid) text += "  " + row.score.reason;
+    for (const ScorePart& part : kScoreParts) {
+      if (row.score.valid && part.compared)
+        text += fmt::format(" {:>{}}", value_text(part, row.score), kWidth);
+    }
+    text += "\n";
+  }
+  return text;
 }
 
 }  // namespace drapeplan

@@ -1,4 +1,4 @@
-// The report of a plan run as one self-contained HTML page.
+// The report of a plan run as one self-contained HTML page, and its scores as a table for the console.
 #pragma once
 
 #include <string>
@@ -40,5 +40,8 @@ struct PlanReport {
 /// The page: no scripts, nothing loaded from elsewhere. In each column of scores the best valid row that is
 /// not a reference stands out.
 std::string html_report(const PlanReport& report);
+
+/// The parts of the scores that are compared, as a table for the console.
+std::string console_table(const std::vector<ReportRow>& rows);
 
 }  // namespace drapeplan

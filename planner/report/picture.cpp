@@ -1,5 +1,7 @@
 #include "planner/report/picture.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -61,10 +63,9 @@ void check(const std::vector<DrapePanel>& panels) {
   for (const DrapePanel& panel : panels) {
     const size_t nodes = panel.mesh.rest.size();
     if (panel.position.size() == nodes && panel.gap.size() == nodes) continue;
-    throw std::invalid_argument("drape_picture: panel \"" + panel.title + "\" has " +
-                                std::to_string(panel.position.size()) + " positions and " +
-                                std::to_string(panel.gap.size()) + " gaps for " + std::to_string(nodes) +
-                                " nodes");
+    throw std::invalid_argument(
+        fmt::format("drape_picture: panel \"{}\" has {} positions and {} gaps for {} nodes", panel.title,
+                    panel.position.size(), panel.gap.size(), nodes));
   }
 }
 

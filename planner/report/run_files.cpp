@@ -1,8 +1,8 @@
 #include "planner/report/run_files.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
-#include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -20,25 +20,12 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
-
-std::string short_score(const Score& score) {
-  if (!score.valid) return score.reason;
-  return format("gap %.1f mm, boundary %.1f mm, objective %.2f", 1e3 * score.max_gap,
-                1e3 * score.max_boundary_offset, score.objective);
-}
-
 /// Published rows first, then the baselines, then the optimum.
 std::vector<ReportRow> rows_of(const DrapeProblem& problem, const PlanResult& result) {
   std::vector<ReportRow> rows;
   for (const Reference& reference : problem.definition().references) {
     Score score;
-    for_each_part(score, [](const char*, double& part) { part = kNaN; });
+    for (const ScorePart& part : kScoreParts) score.*part.value = kNaN;
     score.valid = true;
     score.max_gap = reference.max_gap;
     score.max_boundary_offset = reference.max_boundary_offset;
@@ -91,7 +78,7 @@ DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const st
   const Mesh& mesh = problem.model(fidelity).scene().mesh;
   const double thickness = problem.definition().material.thickness;
   DrapePanel panel{.title = title,
-                   .subtitle = short_score(drape.score),
+                   .subtitle = short_score_text(drape.score),
                    .mesh = mesh,
                    .position = drape.run.final.position,
                    .gap = drape.gap,
@@ -111,7 +98,7 @@ void write_frames(const std::filesystem::path& folder, const std::string& name, 
                   const std::vector<Snapshot>& frames, const Mold* mold, double thickness) {
   std::vector<PvdEntry> entries;
   for (size_t k = 0; k < frames.size(); ++k) {
-    const std::string file = format("%s_%03zu.vtu", name.c_str(), k);
+    const std::string file = fmt::format("{}_{:03}.vtu", name, k);
     const std::vector<double> gaps = mold ? nodal_gaps(frames[k], *mold, thickness) : std::vector<double>{};
     write_vtu(folder / file, mesh, frames[k], gaps);
     entries.push_back({frames[k].time, file});
@@ -154,13 +141,13 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
                     {"Heights of the joints over time",
                      line_chart(height_chart(search.best.schedule, rig, "Optimised sequence"))},
                     {"Best objective against evaluations", line_chart(history_chart(search))}};
-  report.facts = {{"evaluations", std::to_string(search.evaluations)},
-                  {"failed evaluations", std::to_string(search.failed_evaluations)},
-                  {"wall time", format("%.0f s", result.wall_seconds)},
+  report.facts = {{"evaluations", fmt::to_string(search.evaluations)},
+                  {"failed evaluations", fmt::to_string(search.failed_evaluations)},
+                  {"wall time", fmt::format("{:.0f} s", result.wall_seconds)},
                   {"best candidate", search.best.name},
                   {"state hash of the best drape", hex(result.best.run.summary.state_hash)},
-                  {"energy balance error",
-                   format("%.1e of the largest energy", result.best.run.summary.energy.balance_error)}};
+                  {"energy balance error", fmt::format("{:.1e} of the largest energy",
+                                                       result.best.run.summary.energy.balance_error)}};
   report.files = {{"schedule.json", "the optimised sequence, knots"},
                   {"schedule.csv", "the same, sampled for a robot controller"},
                   {"result.json", "all results"},
@@ -172,25 +159,7 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
 }
 
 std::string comparison_table(const DrapeProblem& problem, const PlanResult& result) {
-  std::string text = format("%-28s %10s %10s %10s %10s %10s %9s\n", "", "gap max", "gap rms", "bound. max",
-                            "bound. rms", "wrinkled", "objective");
-  text += format("%-28s %10s %10s %10s %10s %10s %9s\n", "", "[mm]", "[mm]", "[mm]", "[mm]", "[cm^2]", "[-]");
-  const auto cell = [](double value, const char* pattern, int width) {
-    return std::isfinite(value) ? format(pattern, width, value) : format("%*s", width, "-");
-  };
-  for (const ReportRow& row : rows_of(problem, result)) {
-    const Score& s = row.score;
-    text += format("%-28s", row.name.substr(0, 28).c_str());
-    if (!s.valid) {
-      text += "  " + s.reason + "\n";
-      continue;
-    }
-    for (const double part : {s.max_gap, s.rms_gap, s.max_boundary_offset, s.rms_boundary_offset}) {
-      text += " " + cell(1e3 * part, "%*.2f", 10);
-    }
-    text += " " + cell(1e4 * s.wrinkled_area, "%*.1f", 10) + " " + cell(s.objective, "%*.2f", 9) + "\n";
-  }
-  return text;
+  return console_table(rows_of(problem, result));
 }
 
 }  // namespace drapeplan

@@ -1,5 +1,7 @@
 #include "planner/report/vtu.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -44,8 +46,10 @@ std::string data_array(const std::string& name, int components, std::span<const 
   std::vector<unsigned char> bytes(sizeof size + size);
   std::memcpy(bytes.data(), &size, sizeof size);
   if (size > 0) std::memcpy(bytes.data() + sizeof size, values.data(), size);
-  return "        <DataArray type=\"" + std::string(type) + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
-         std::to_string(components) + "\" format=\"binary\">" + base64(bytes) + "</DataArray>\n";
+  return fmt::format(
+      "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" "
+      "format=\"binary\">{}</DataArray>\n",
+      type, name, components, base64(bytes));
 }
 
 std::string scalars(const std::string& name, const std::vector<double>& values) {
@@ -67,12 +71,13 @@ std::string grid(const std::vector<Eigen::Vector3d>& points, const std::vector<s
     offsets.push_back(std::int64_t(connectivity.size()));
   }
   const std::vector<std::uint8_t> types(cells.size(), kVtkQuad);
-  return "<?xml version=\"1.0\"?>\n"
-         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
-         "header_type=\"UInt64\">\n"
-         "  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" +
-         std::to_string(points.size()) + "\" NumberOfCells=\"" + std::to_string(cells.size()) +
-         "\">\n      <Points>\n" + vectors("points", points) + "      </Points>\n      <Cells>\n" +
+  return fmt::format(
+             "<?xml version=\"1.0\"?>\n"
+             "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+             "header_type=\"UInt64\">\n"
+             "  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n      <Points>\n",
+             points.size(), cells.size()) +
+         vectors("points", points) + "      </Points>\n      <Cells>\n" +
          data_array<std::int64_t>("connectivity", 1, connectivity) +
          data_array<std::int64_t>("offsets", 1, offsets) + data_array<std::uint8_t>("types", 1, types) +
          "      </Cells>\n      <PointData>\n" + point_data + "      </PointData>\n      <CellData>\n" +
@@ -81,8 +86,8 @@ std::string grid(const std::vector<Eigen::Vector3d>& points, const std::vector<s
 
 void check_size(const char* field, size_t size, size_t expected, bool may_be_empty) {
   if (size == expected || (may_be_empty && size == 0)) return;
-  throw std::invalid_argument(std::string("write_vtu: ") + field + " has " + std::to_string(size) +
-                              " entries, expected " + std::to_string(expected));
+  throw std::invalid_argument(
+      fmt::format("write_vtu: {} has {} entries, expected {}", field, size, expected));
 }
 
 }  // namespace
@@ -106,7 +111,7 @@ void write_vtu(const std::filesystem::path& file, const Mesh& mesh, const Snapsh
 }
 
 void write_mold_vtu(const std::filesystem::path& file, const Mold& mold, int n) {
-  if (n < 2) throw std::invalid_argument("write_mold_vtu: n must be at least 2, it is " + std::to_string(n));
+  if (n < 2) throw std::invalid_argument(fmt::format("write_mold_vtu: n must be at least 2, it is {}", n));
   std::vector<Eigen::Vector3d> points, normals;
   std::vector<double> curvature;
   std::vector<std::array<int, 4>> cells;
@@ -140,8 +145,8 @@ void write_pvd(const std::filesystem::path& file, const std::vector<PvdEntry>& e
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
       "  <Collection>\n";
   for (const PvdEntry& entry : entries) {
-    text += "    <DataSet timestep=\"" + exact(entry.time) + "\" part=\"0\" file=\"" +
-            escape_markup(entry.file) + "\"/>\n";
+    text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", exact(entry.time),
+                        escape_markup(entry.file));
   }
   write_text(file, text + "  </Collection>\n</VTKFile>\n");
 }

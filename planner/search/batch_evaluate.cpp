@@ -7,14 +7,13 @@
 #include <utility>
 
 #include "planner/base/parallel.hpp"
+#include "planner/drape/scoring.hpp"
 
 namespace drapeplan {
 namespace {
 
 Outcome failed(Outcome outcome, const std::string& reason) {
-  outcome.score.valid = false;
-  outcome.score.reason = reason;
-  outcome.score.objective = kFailureObjective;
+  outcome.score = failed_score(reason);
   return outcome;
 }
 

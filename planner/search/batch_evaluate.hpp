@@ -17,9 +17,6 @@ using Evaluate = std::function<Outcome(const Schedule& schedule, const std::stri
 using BatchEvaluate = std::function<std::vector<Outcome>(
     const std::vector<Schedule>& schedules, const std::string& fidelity, const std::string& stage)>;
 
-/// Objective of an outcome whose evaluation threw, so without any score.
-inline constexpr double kFailureObjective = 1e6;
-
 /// Wraps `evaluate`: repeated schedules are served by the log, exceptions and non-finite objectives become
 /// failed outcomes, new outcomes are written to the log. Within a batch lines are written in the order of the
 /// batch, each as soon as all before it are finished: a killed run loses at most the few that overtook.

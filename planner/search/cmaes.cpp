@@ -11,6 +11,9 @@
 namespace drapeplan {
 namespace {
 
+/// The search has converged when the largest spread falls below it, in units of the box's edge.
+constexpr double kSmallestSigma = 1e-9;
+
 /// Reflection at the faces of [0, 1], repeated: a triangle wave of period 2.
 double fold(double x) {
   const double within = x - 2 * std::floor(0.5 * x);
@@ -20,7 +23,7 @@ double fold(double x) {
 }  // namespace
 
 CmaEs::CmaEs(const Eigen::VectorXd& x0, const CmaEsOptions& options)
-    : smallest_sigma_(options.smallest_sigma), mean_(x0), sigma_(options.sigma0), bits_(options.seed) {
+    : mean_(x0), sigma_(options.sigma0), bits_(options.seed) {
   if (x0.size() == 0 || !x0.allFinite())
     throw std::invalid_argument("CmaEs: the start is empty or not finite");
   if (!(options.sigma0 > 0)) throw std::invalid_argument("CmaEs: sigma0 must be positive");
@@ -130,7 +133,7 @@ Eigen::VectorXd CmaEs::mean() const {
 
 std::string CmaEs::stop_reason() const {
   if (!mean_.allFinite() || !axes_.allFinite()) return "the search distribution is not finite";
-  if (!(sigma_ * axes_.maxCoeff() > smallest_sigma_))
+  if (!(sigma_ * axes_.maxCoeff() > kSmallestSigma))
     return "converged: the search distribution has shrunk to a point";
   return {};
 }

@@ -14,7 +14,6 @@ struct CmaEsOptions {
   double sigma0 = 0.05;  ///< first step, in units of the box's edge
   int population = 0;    ///< candidates per generation; 0: 4 + floor(3 ln n)
   std::uint64_t seed = 1;
-  double smallest_sigma = 1e-9;  ///< the search has converged when the largest spread falls below
 };
 
 /// Covariance matrix adaptation with cumulative step-size control, (mu/mu_w, lambda), positive weights, over
@@ -51,7 +50,6 @@ class CmaEs {
   int population_ = 0, parents_ = 0, generation_ = 0;
   Eigen::VectorXd weights_;  ///< of the parents; sum is 1
   double mu_eff_ = 0, c_sigma_ = 0, d_sigma_ = 0, c_c_ = 0, c_1_ = 0, c_mu_ = 0, chi_n_ = 0;
-  double smallest_sigma_ = 0;
 
   Eigen::VectorXd mean_, path_sigma_, path_c_;
   double sigma_ = 0;

@@ -51,7 +51,8 @@ Evaluation from_json(const json& j) {
   const json& score = j.at("score");
   const json& summary = j.at("summary");
   constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
-  for_each_part(e.outcome.score, [&](const char* key, double& v) { v = number_or(score.at(key), kLost); });
+  for (const ScorePart& part : kScoreParts)
+    e.outcome.score.*part.value = number_or(score.at(part.key), kLost);
   e.outcome.score.valid = score.at("valid").get<bool>();
   if (!e.outcome.score.valid) e.outcome.score.reason = score.at("reason").get<std::string>();
   const auto read_from = [&](const json& object) {

@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <vector>
 
 namespace drapeplan {
@@ -22,8 +21,6 @@ struct NloptStart {
 };
 
 struct NloptOptions {
-  double first_step = 0.1;      ///< in units of the box's edge
-  double smallest_step = 2e-3;  ///< a search ends when its step falls below
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: OpenMP's default
 };
@@ -37,18 +34,16 @@ struct NloptTrial {
 struct NloptRun {
   std::vector<NloptTrial> trials;  ///< in the order of evaluation
   int best = -1;                   ///< index of the best trial; -1 if all failed
-  std::string stop_reason;
 };
 
 /// Minimises `objective` over [0, 1]^n from every start, each with its own budget. A search that converges
 /// early starts again from its best point with half the step, until the budget is spent or the step is too
 /// small. The runs depend on the starts only, not on the number of threads.
-/// @param objective  safe to call concurrently. A value that is not finite, or an exception, is a failure:
-/// NLopt then
-///                   sees a finite penalty a little above the worst value of that search so far.
+/// @param objective  safe to call concurrently. A value that is not finite is a failure: NLopt then sees a
+/// finite penalty a little above the worst value of that search so far. An exception ends the search and
+/// reaches the caller.
 /// @return one run per start, in order. The best is taken from the trials, not from what NLopt returns:
-/// COBYLA of
-///         2.7.1 may return its last point.
+/// COBYLA of 2.7.1 may return its last point.
 std::vector<NloptRun> nlopt_search(const std::function<double(const Eigen::VectorXd&)>& objective,
                                    const std::vector<NloptStart>& starts, const NloptOptions& options);
 

@@ -1,15 +1,17 @@
 #include "planner/search/stages.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <mutex>
 #include <set>
 #include <utility>
 
+#include "planner/drape/problem.hpp"
 #include "planner/search/cmaes.hpp"
 #include "planner/search/nlopt.hpp"
 
@@ -17,8 +19,12 @@ namespace drapeplan {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDifferentTime =
-    0.05;  // schedules whose knots all agree within it count as the same finalist [s]
+/// Schedules whose knots all agree within it count as the same finalist [s].
+constexpr double kDifferentTime = 0.05;
+/// NLopt searches side by side in the wave stage, COBYLA and SBPLX in turn.
+constexpr int kLocalSearches = 4;
+/// Of the gripper stage, in units of the box's edge: small, so that what the wave stage found is kept.
+constexpr double kGripperSigma = 0.05;
 
 /// A candidate before it has a fidelity: strokes and where they come from.
 struct Trial {
@@ -45,7 +51,7 @@ class Meter {
     const OptimiseOptions& o = options.optimise;
     planned_[options.wave_fidelity] += o.wave_evaluations;
     planned_[options.gripper_fidelity] += o.gripper_evaluations;
-    planned_[options.report_fidelity] += o.finalists + 3;  // the baselines and the centre
+    planned_[kReport] += o.finalists + 3;  // the baselines and the centre
   }
 
   void count(const std::string& stage, const std::string& fidelity, const std::vector<Outcome>& outcomes) {
@@ -181,7 +187,7 @@ std::vector<Trial> StagedSearch::screen_waves() {
     wave.start = Eigen::Vector2d(u * corner[0], v * corner[1]);
     wave.delay *= delay_factor;
     starts_.push_back(family.encode(wave));
-    trials.push_back(make("wave " + std::to_string(trials.size() + 1), family.decode(starts_.back())));
+    trials.push_back(make(fmt::format("wave {}", trials.size() + 1), family.decode(starts_.back())));
   };
   for (const double v : {-1.0, 1.0}) {
     for (const double u : {-1.0, 1.0}) add(u, v, 1);
@@ -200,7 +206,7 @@ std::vector<NloptStart> StagedSearch::local_starts(const std::vector<Trial>& scr
                    [&](size_t a, size_t b) { return better(screened[a], screened[b]); });
   constexpr int kLeastBudget = 2 * (WaveFamily::kDimension + 1);  // a first simplex and as many steps
   const int most = std::max(1, budget / kLeastBudget);
-  const int count = std::min({std::max(options_.local_searches, 1), most, int(order.size())});
+  const int count = std::min({kLocalSearches, most, int(order.size())});
   std::vector<NloptStart> starts;
   for (int k = 0; k < count; ++k) {
     starts.push_back({starts_[order[size_t(k)]], k % 2 == 0 ? LocalSearch::cobyla : LocalSearch::sbplx,
@@ -222,7 +228,6 @@ void StagedSearch::search_waves() {
     return value_of(outcome.front());
   };
   NloptOptions nlopt;
-  nlopt.first_step = options_.wave_first_step;
   nlopt.seed = options_.optimise.seed;
   nlopt.threads = options_.threads;
   const std::vector<NloptRun> runs = nlopt_search(objective, local_starts(trials_, budget), nlopt);
@@ -231,7 +236,7 @@ void StagedSearch::search_waves() {
   for (size_t turn = 0; turn < longest; ++turn) {
     for (const NloptRun& run : runs) {
       if (turn >= run.trials.size()) continue;
-      Trial trial = make("wave " + std::to_string(trials_.size() + 1), family.decode(run.trials[turn].x));
+      Trial trial = make(fmt::format("wave {}", trials_.size() + 1), family.decode(run.trials[turn].x));
       trial.objective = run.trials[turn].value;
       record(trial, options_.wave_fidelity, "wave");
       trials_.push_back(std::move(trial));
@@ -248,22 +253,20 @@ void StagedSearch::search_grippers() {
     evaluate(again, options_.gripper_fidelity, "gripper");
     trials_ = std::move(again);
   }
-  const GripperFamily family(frame_, base.strokes, options_.own_strokes);
+  const GripperFamily family(frame_, base.strokes);
   constexpr int kLeastGenerations = 4, kLeastPopulation = 4;
   const int usual = 4 + int(std::floor(3 * std::log(double(family.dimension()))));
   CmaEsOptions cma;
-  cma.sigma0 = options_.gripper_sigma0;
+  cma.sigma0 = kGripperSigma;
   cma.seed = options_.optimise.seed;
-  cma.population = options_.population > 0
-                       ? options_.population
-                       : std::max(kLeastPopulation, std::min(usual, budget / kLeastGenerations));
+  cma.population = std::max(kLeastPopulation, std::min(usual, budget / kLeastGenerations));
   CmaEs search(family.encode_base(), cma);
   for (int done = 0; done + search.population() <= budget && search.stop_reason().empty();
        done += search.population()) {
     const Eigen::MatrixXd x = search.ask();
     std::vector<Trial> generation;
     for (Eigen::Index k = 0; k < x.cols(); ++k) {
-      generation.push_back(make("gripper " + std::to_string(done + int(k) + 1), family.decode(x.col(k))));
+      generation.push_back(make(fmt::format("gripper {}", done + k + 1), family.decode(x.col(k))));
     }
     evaluate(generation, options_.gripper_fidelity, "gripper");
     Eigen::VectorXd values(x.cols());
@@ -307,7 +310,7 @@ std::vector<Trial> StagedSearch::pick_finalists() const {
 
 void StagedSearch::compare_finalists() {
   std::vector<Trial> finalists = pick_finalists();
-  const std::vector<Outcome> outcomes = evaluate(finalists, options_.report_fidelity, "report");
+  const std::vector<Outcome> outcomes = evaluate(finalists, kReport, "report");
   for (size_t k = 0; k < finalists.size(); ++k) {
     result_.finalists.push_back({finalists[k].name, finalists[k].schedule, outcomes[k]});
   }
@@ -324,25 +327,22 @@ void StagedSearch::conclude() {
   const double baseline = std::min(value_of(result_.uniform.outcome), value_of(result_.wave.outcome));
   const double best = value_of(result_.best.outcome);
   result_.beats_baselines = best < baseline;
-  char text[256];
+  const std::string& name = result_.best.name;
   if (!std::isfinite(best)) {
-    std::snprintf(text, sizeof text, "no schedule could be evaluated at fidelity \"%s\"",
-                  options_.report_fidelity.c_str());
+    result_.message = fmt::format("no schedule could be evaluated at fidelity \"{}\"", kReport);
   } else if (!std::isfinite(baseline)) {
-    std::snprintf(text, sizeof text, "both baselines failed; the best schedule, %s, has an objective of %.6g",
-                  result_.best.name.c_str(), best);
+    result_.message =
+        fmt::format("both baselines failed; the best schedule, {}, has an objective of {:.6g}", name, best);
   } else if (result_.beats_baselines) {
-    std::snprintf(text, sizeof text,
-                  "the optimised sequence (candidate \"%s\") has an objective of %.4g, %.1f %% below the "
-                  "better baseline's %.4g",
-                  result_.best.name.c_str(), best, 100 * (baseline - best) / std::abs(baseline), baseline);
+    result_.message = fmt::format(
+        "the optimised sequence (candidate \"{}\") has an objective of {:.4g}, {:.1f} % below the better "
+        "baseline's {:.4g}",
+        name, best, 100 * (baseline - best) / std::abs(baseline), baseline);
   } else {
-    std::snprintf(
-        text, sizeof text,
-        "nothing found beats the baselines at the reporting fidelity: %s stays the best, objective %.6g",
-        result_.best.name.c_str(), best);
+    result_.message = fmt::format(
+        "nothing found beats the baselines at the reporting fidelity: {} stays the best, objective {:.6g}",
+        name, best);
   }
-  result_.message = text;
 }
 
 }  // namespace

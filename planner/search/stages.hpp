@@ -14,17 +14,8 @@ namespace drapeplan {
 struct StagedOptions {
   OptimiseOptions optimise;
   std::string wave_fidelity = "screen";
-  std::string gripper_fidelity = "screen";
-  std::string report_fidelity = "report";
-  int local_searches = 4;        ///< NLopt searches side by side in the wave stage, COBYLA and SBPLX in turn
-  double wave_first_step = 0.1;  ///< in units of the box's edge
-  double gripper_sigma0 = 0.05;  ///< small, so that what the wave stage found is kept
-  int population = 0;  ///< of CMA-ES; 0: its default, but at least four generations within the budget
-  /// Search durations per gripper too (GripperFamily). Off: on synthetic objectives, also one that asks for
-  /// different durations, one common factor came closer with up to 750 evaluations; twice the variables need
-  /// thousands.
-  bool own_strokes = false;
-  int threads = 0;  ///< 0: OpenMP's default; does not change the result
+  std::string gripper_fidelity = "screen";  ///< finalists are compared at kReport
+  int threads = 0;                          ///< 0: OpenMP's default; does not change the result
 };
 
 /// A schedule and what it is worth.
@@ -65,10 +56,11 @@ struct Progress {
 
 /// Minimises the objective over schedules in three stages.
 /// 1 wave     screens the baselines and eleven waves, then NLopt from the best of them;
-/// 2 gripper  CMA-ES over all grippers' strokes, with a small first step, from the best of stage 1;
+/// 2 gripper  CMA-ES over the starts of all grippers' strokes and one factor on their durations, with a small
+///            first step, from the best of stage 1. On synthetic objectives, also one that asks for different
+///            durations, one common factor came closer with up to 750 evaluations than a duration for each;
 /// 3 report   the baselines, the best few different schedules and the centre of the last search distribution
-/// are
-///            evaluated at the reporting fidelity; the best there wins.
+///            are evaluated at the reporting fidelity; the best there wins.
 /// The result depends on frame, options and evaluate only: not on threads, nor on what was served from a log.
 /// @param evaluate  safe to call concurrently.
 /// @param progress  called after each evaluation, one call at a time, from any thread; may be empty.

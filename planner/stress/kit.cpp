@@ -1,16 +1,17 @@
 #include "planner/stress/kit.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <numbers>
 #include <random>
 #include <stdexcept>
 
 #include "fem/run/workspace.hpp"
+#include "mapping/article_mold.hpp"
 #include "planner/base/text.hpp"
 #include "planner/case/file.hpp"
 #include "planner/drape/problem.hpp"
@@ -26,7 +27,7 @@ class TemporaryFile {
   explicit TemporaryFile(const std::string& text) {
     static std::atomic<int> count{0};  // several threads build scenes at once
     path_ = std::filesystem::temp_directory_path() /
-            ("drapeplan-stress-" + std::to_string(getpid()) + "-" + std::to_string(count++) + ".json");
+            fmt::format("drapeplan-stress-{}-{}.json", getpid(), count++);
     write_text(path_, text);
   }
   TemporaryFile(const TemporaryFile&) = delete;
@@ -44,9 +45,7 @@ class TemporaryFile {
 }  // namespace
 
 std::string number_text(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return fmt::format("{:.3g}", value);
 }
 
 RunRequest request_of(const StressSetup& setup) {
@@ -73,23 +72,6 @@ Fabric woven_fabric() {
   fabric.compression = Curve{{0, 0.001, 0.02}, {0, 0.53e6, 1.43e6}};
   fabric.shear = Curve{{0, 10 * kDegree, 35 * kDegree, 50 * kDegree}, {0, 0.09e6, 0.11e6, 0.4e6}};
   return fabric;
-}
-
-Mesh grid_mesh(int nu, int nv, const std::function<Eigen::Vector2d(double, double)>& place) {
-  Mesh mesh;
-  const auto node = [nu](int i, int j) { return j * (nu + 1) + i; };
-  for (int j = 0; j <= nv; ++j) {
-    for (int i = 0; i <= nu; ++i) mesh.rest.push_back(place(double(i) / nu, double(j) / nv));
-  }
-  for (int j = 0; j < nv; ++j) {
-    for (int i = 0; i < nu; ++i)
-      mesh.quads.push_back({node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)});
-  }
-  for (int i = 0; i < nu; ++i) mesh.outline.push_back(node(i, 0));
-  for (int j = 0; j < nv; ++j) mesh.outline.push_back(node(nu, j));
-  for (int i = nu; i > 0; --i) mesh.outline.push_back(node(i, nv));
-  for (int j = nv; j > 0; --j) mesh.outline.push_back(node(0, j));
-  return mesh;
 }
 
 HingedSag sag_of(const StripSetup& s) {
@@ -187,16 +169,7 @@ StressSetup corner_drape(double mesh_size) {
   scene.position = {0.1, 0.1};
   scene.gravity = kGravity;
   scene.damping = 200;  // nearly critical for the ply between its pads
-  // [Krogh], Eq. (1).
-  scene.mold = Mold(PolynomialShape{{{1, 0, 1.004},
-                                     {0, 1, 1.089},
-                                     {2, 0, -3.667},
-                                     {1, 1, -4.4},
-                                     {0, 2, -3.75},
-                                     {3, 0, 3.086},
-                                     {2, 1, 8.889},
-                                     {0, 3, 4.321}}},
-                    {{0, 0}, {0.45, 0.45}});
+  scene.mold = article_mold();
   scene.friction = 1.5;
   setup.schedule = lay_down(scene);
   return setup;

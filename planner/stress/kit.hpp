@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "fem/mesh/grid.hpp"
 #include "planner/stress/exact.hpp"
 #include "planner/stress/stress.hpp"
 
@@ -17,6 +18,7 @@ inline constexpr double kDegree = 0.017453292519943295;
 std::string number_text(double value);
 
 /// Lists of scenes, one function per file.
+void add_shear_scenes(std::vector<StressScene>& scenes);
 void add_sheet_scenes(std::vector<StressScene>& scenes);
 void add_mold_scenes(std::vector<StressScene>& scenes);
 void add_rig_scenes(std::vector<StressScene>& scenes);
@@ -28,9 +30,6 @@ RunRequest request_of(const StressSetup& setup);
 Fabric linear_fabric(double modulus, double shear, double transverse, double compression_share = 1);
 /// Convex tension, soft compression, shear that locks beyond 35 degrees; 0.3 mm, 314 g/m^2.
 Fabric woven_fabric();
-
-/// nu by nv cells with nodes at place(i / nu, j / nv); node (i, j) is j (nu + 1) + i.
-Mesh grid_mesh(int nu, int nv, const std::function<Eigen::Vector2d(double, double)>& place);
 
 /// A strip between two hinges, loaded by its weight, damped critically: sags to a known shape.
 struct StripSetup {

@@ -6,6 +6,7 @@ namespace drapeplan {
 
 std::vector<StressScene> stress_scenes() {
   std::vector<StressScene> scenes;
+  add_shear_scenes(scenes);
   add_sheet_scenes(scenes);
   add_mold_scenes(scenes);
   add_rig_scenes(scenes);

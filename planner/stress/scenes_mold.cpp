@@ -1,4 +1,6 @@
 // Sheets on molds: friction, curvature, steep walls, edges, starts.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -26,8 +28,8 @@ StressSetup incline(const std::vector<std::string>& overrides) {
 }
 
 std::vector<std::string> tilted(double degrees, double coefficient) {
-  return {"mold.angle=\"" + std::to_string(degrees) + " deg\"",
-          "friction.coefficient=" + std::to_string(coefficient)};
+  return {fmt::format("mold.angle=\"{:f} deg\"", degrees),
+          fmt::format("friction.coefficient={:f}", coefficient)};
 }
 
 /// Path of a block on an incline in the time [m], down the slope.

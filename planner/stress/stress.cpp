@@ -1,9 +1,10 @@
 #include "planner/stress/stress.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <limits>
 #include <memory>
@@ -110,9 +111,9 @@ void accept(const StressScene& scene, Verdict verdict, const std::string& reason
   const bool clear = !reason.empty() && reason.find(scene.says) != std::string::npos;
   if (scene.otherwise == verdict && clear) return;
   outcome.verdict = Verdict::wrong;
-  outcome.reason =
-      std::string(verdict_name(verdict)) +
-      (scene.otherwise == verdict ? " without a clear reason: " : ", though it can be played: ") + reason;
+  outcome.reason = fmt::format(
+      "{}{}: {}", verdict_name(verdict),
+      scene.otherwise == verdict ? " without a clear reason" : ", though it can be played", reason);
 }
 
 void judge_run(const StressScene& scene, const StressRun& run, StressOutcome& outcome) {
@@ -167,13 +168,9 @@ const char* verdict_name(Verdict verdict) {
 }
 
 std::string StressCheck::text() const {
-  char line[300];
-  if (least == -kForever)
-    std::snprintf(line, sizeof line, "%s %.4g, at most %.4g", what.c_str(), value, most);
-  else
-    std::snprintf(line, sizeof line, "%s %.6g, right: %.6g +- %.2g", what.c_str(), value,
-                  0.5 * (least + most), 0.5 * (most - least));
-  return line;
+  if (least == -kForever) return fmt::format("{} {:.4g}, at most {:.4g}", what, value, most);
+  return fmt::format("{} {:.6g}, right: {:.6g} +- {:.2g}", what, value, 0.5 * (least + most),
+                     0.5 * (most - least));
 }
 
 StressCheck near(std::string what, double value, double expected, double share) {

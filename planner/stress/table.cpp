@@ -1,7 +1,8 @@
 // Outcomes of stress scenes as JSON, for programs and for people.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "planner/drape/result_fields.hpp"
@@ -22,11 +23,10 @@ std::optional<double> true_over_estimated(const StressOutcome& o) {
   return std::isfinite(ratio) ? std::optional(ratio) : std::nullopt;
 }
 
-std::string cell(const std::optional<double>& value, const char* format) {
+/// Empty where there is no finite value. @param format  of fmt, for a double.
+std::string cell(const std::optional<double>& value, fmt::string_view format) {
   if (!value || !std::isfinite(*value)) return "";
-  char text[40];
-  std::snprintf(text, sizeof text, format, *value);
-  return text;
+  return fmt::format(fmt::runtime(format), *value);
 }
 
 /// A field of a CSV table, quoted.
@@ -107,21 +107,21 @@ std::string stress_csv(const std::vector<StressOutcome>& outcomes) {
       "group,scene,verdict,balance_error,kinetic_ratio,drift_m,true_over_estimated_step,"
       "limit_over_estimated_step,steps,dt_s,elements,reason\n";
   for (const StressOutcome& o : outcomes) {
-    text += quoted(o.group) + "," + quoted(o.name) + "," + verdict_name(o.verdict) + "," +
-            cell(balance_of(o), "%.2e") + "," + cell(kinetic_ratio_of(o), "%.3g") + "," +
-            cell(o.drift, "%.2e") + "," + cell(true_over_estimated(o), "%.4f") + "," +
-            cell(o.limit_over_estimate, "%.3f") + "," + (o.summary ? std::to_string(o.summary->steps) : "") +
-            "," + cell(of_summary(o, [](const RunSummary& r) { return r.dt; }), "%.4g") + "," +
-            std::to_string(o.elements) + "," + quoted(o.reason) + "\n";
+    const std::optional<double> dt = of_summary(o, [](const RunSummary& r) { return r.dt; });
+    text += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(o.group), quoted(o.name), verdict_name(o.verdict),
+        cell(balance_of(o), "{:.2e}"), cell(kinetic_ratio_of(o), "{:.3g}"), cell(o.drift, "{:.2e}"),
+        cell(true_over_estimated(o), "{:.4f}"), cell(o.limit_over_estimate, "{:.3f}"),
+        o.summary ? fmt::to_string(o.summary->steps) : "", cell(dt, "{:.4g}"), o.elements, quoted(o.reason));
   }
   return text;
 }
 
 std::string stress_markdown(const std::vector<StressOutcome>& outcomes) {
   std::string text = "# Stability of stiff and extreme scenes\n\n";
-  text += std::to_string(outcomes.size()) + " scenes: ";
+  text += fmt::format("{} scenes: ", outcomes.size());
   for (const Verdict v : {Verdict::right, Verdict::refused, Verdict::stopped, Verdict::wrong}) {
-    text += std::to_string(count(outcomes, v)) + " " + verdict_name(v) + (v == Verdict::wrong ? ".\n" : ", ");
+    text += fmt::format("{} {}{}", count(outcomes, v), verdict_name(v), v == Verdict::wrong ? ".\n" : ", ");
   }
   text +=
       "Balance: largest error of the books over the largest energy. Kinetic: largest ratio of the ply's "
@@ -139,12 +139,11 @@ std::string stress_markdown(const std::vector<StressOutcome>& outcomes) {
               "\n\n| scene | verdict | measured, or why | balance | kinetic | drift [m] | step |\n"
               "|---|---|---|---|---|---|---|\n";
     }
-    const std::string limit = cell(o.limit_over_estimate, " (%.2f)");
-    text += "| " + escaped(o.name) + " | " +
-            (o.verdict == Verdict::wrong ? "**wrong**" : verdict_name(o.verdict)) + " | " +
-            escaped(o.reason) + " | " + cell(balance_of(o), "%.0e") + " | " +
-            cell(kinetic_ratio_of(o), "%.2g") + " | " + cell(o.drift, "%.0e") + " | " +
-            cell(true_over_estimated(o), "%.2f") + limit + " |\n";
+    const std::string limit = cell(o.limit_over_estimate, " ({:.2f})");
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {}{} |\n", escaped(o.name),
+                        o.verdict == Verdict::wrong ? "**wrong**" : verdict_name(o.verdict),
+                        escaped(o.reason), cell(balance_of(o), "{:.0e}"), cell(kinetic_ratio_of(o), "{:.2g}"),
+                        cell(o.drift, "{:.0e}"), cell(true_over_estimated(o), "{:.2f}"), limit);
   }
   return text;
 }

@@ -1,9 +1,12 @@
 #include "planner/study/charts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
 #include "planner/base/statistics.hpp"
+#include "planner/drape/score.hpp"
 #include "planner/report/charts.hpp"
 
 namespace drapeplan {
@@ -69,7 +72,7 @@ Chart search_chart(const Study& study, bool by_time) {
 }
 
 Chart rank_chart(const Study& study) {
-  Chart chart{"How settings rank " + std::to_string(study.schedules) + " schedules, " + study.case_name,
+  Chart chart{fmt::format("How settings rank {} schedules, {}", study.schedules, study.case_name),
               "run time on one core [s]",
               "Spearman's rank correlation",
               {}};
@@ -104,17 +107,17 @@ double error_of(const StudyPoint& point, const std::string& name) {
 }
 
 std::vector<StudyColumn> study_columns(const Study& study) {
-  if (study.drapes) {
-    return {{"gap", "gap [mm]", 1e3},
-            {"boundary_offset", "offset [mm]", 1e3},
-            {"relative", "larger of gap and offset [%]", 1e2},
-            {"places", "nodes r.m.s. [mm]", 1e3},
-            {"shear_deg", "shear r.m.s. [deg]", 1},
-            {"objective", "objective", 1}};
+  const StudyColumn places{"places", "nodes r.m.s. [mm]", 1e3}, shear{"shear_deg", "shear r.m.s. [deg]", 1};
+  if (!study.drapes) return {{"relative", "largest relative [%]", 1e2}, places, shear};
+  std::vector<StudyColumn> columns;
+  for (const ScorePart& part : kScoreParts) {
+    if (part.leads) columns.push_back({part.study, title_of(part), part.factor});
   }
-  return {{"relative", "largest relative [%]", 1e2},
-          {"places", "nodes r.m.s. [mm]", 1e3},
-          {"shear_deg", "shear r.m.s. [deg]", 1}};
+  columns.insert(columns.end(), {{"relative", "larger of gap and offset [%]", 1e2}, places, shear});
+  for (const ScorePart& part : kScoreParts) {
+    if (part.value == &Score::objective) columns.push_back({part.study, title_of(part), part.factor});
+  }
+  return columns;
 }
 
 std::vector<int> study_front(const Study& study, const std::string& error) {

@@ -1,8 +1,9 @@
 #include "planner/study/files.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "planner/base/statistics.hpp"
@@ -37,28 +38,27 @@ std::string head(const std::vector<std::string>& cells) {
 /// Three significant digits; an en dash for what is not finite.
 std::string short_number(double value) {
   if (!std::isfinite(value)) return "\u2013";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return fmt::format("{:.3g}", value);
 }
 
 std::string reference_text(const Study& study) {
-  std::string text = study.at.empty() ? "The base is the case's `fem` section."
-                                      : "The base is the case's `fem` section with " + words(study.at) + ".";
-  text += " Reference: " + words(study.reference) + ", all else as in the base";
   double seconds = 0;
   for (const StudyRun& run : study.reference_runs) seconds += run.cpu_seconds;
-  text += "; " + short_number(seconds / double(std::max<size_t>(study.reference_runs.size(), 1))) +
-          " s per run.\n\nWhat is left in it, from the sweeps: ";
+  const std::string text = fmt::format(
+      "The base is the case's `fem` section{}. Reference: {}, all else as in the base; {} s per run.\n\n"
+      "What is left in it, from the sweeps: ",
+      study.at.empty() ? "" : " with " + words(study.at), words(study.reference),
+      short_number(seconds / double(std::max<size_t>(study.reference_runs.size(), 1))));
   std::string rest;
   for (const StudyPoint& point : study.points) {
     if (point.curve == "mesh size" && point.valid() && rest.empty())
-      rest = "a mesh of " + point.settings.begin()->second + " differs by " +
-             short_number(1e2 * error_of(point, "relative")) + " %";
+      rest = fmt::format("a mesh of {} differs by {} %", point.settings.begin()->second,
+                         short_number(1e2 * error_of(point, "relative")));
   }
   for (const auto& [curve, error] : study.base_error) {
     if (curve == "mesh size" || curve == "rates") continue;  // stated before; other physics
-    rest += "; the base's " + curve + " differs from the most careful by " + short_number(1e2 * error) + " %";
+    rest += fmt::format("; the base's {} differs from the most careful by {} %", curve,
+                        short_number(1e2 * error));
   }
   return text + rest + ".\n\n";
 }
@@ -134,15 +134,15 @@ std::string ranks_text(const Study& study) {
   std::string text = head({"fidelity", "setting", "time [s]", "Spearman", "Kendall", "schedules"});
   for (const RankRow& r : study.ranks)
     text += row({r.name, words(r.settings), short_number(r.cpu_seconds), fixed(r.spearman, 3),
-                 fixed(r.kendall, 3), std::to_string(r.compared)});
+                 fixed(r.kendall, 3), fmt::to_string(r.compared)});
   return text;
 }
 
 std::string parts_text(const Study& study) {
   std::string text;
   if (!study.ranks.empty()) {
-    text += "\n## Ranks of " + std::to_string(study.schedules) + " schedules, against " +
-            study.rank_reference + "\n\n" + ranks_text(study);
+    text += fmt::format("\n## Ranks of {} schedules, against {}\n\n{}", study.schedules, study.rank_reference,
+                        ranks_text(study));
   }
   if (!study.noise.empty()) {
     text += "\n## Noise of the objective\n\n" +
@@ -169,7 +169,7 @@ std::string parts_text(const Study& study) {
             head({"random starts", "wall [ms]", "floor r.m.s. [mm]", "error [um]", "floor max [mm]",
                   "error [um]", "link violation [m]"});
     for (const ReachRow& r : study.reach)
-      text += row({std::to_string(r.starts), short_number(1e3 * r.wall_seconds), fixed(1e3 * r.floor_rms, 4),
+      text += row({fmt::to_string(r.starts), short_number(1e3 * r.wall_seconds), fixed(1e3 * r.floor_rms, 4),
                    short_number(1e6 * r.floor_rms_error), fixed(1e3 * r.floor_max, 4),
                    short_number(1e6 * r.floor_max_error), short_number(r.link_violation)});
   }
@@ -180,7 +180,7 @@ std::string fidelities_text(const Study& study) {
   const std::map<std::string, Settings> chosen = chosen_fidelities(study);
   if (chosen.empty()) return "";
   std::string text = "\n## Fidelities that follow\n\n";
-  for (const auto& [name, settings] : chosen) text += "- `" + name + "`: " + words(settings) + "\n";
+  for (const auto& [name, settings] : chosen) text += fmt::format("- `{}`: {}\n", name, words(settings));
   return text;
 }
 
@@ -232,8 +232,8 @@ std::string points_csv(const Study& study) {
 std::string ranks_csv(const Study& study) {
   std::string text = "fidelity,settings,cpu_s,spearman,kendall,objectives\n";
   for (const RankRow& r : study.ranks) {
-    text += r.name + ",\"" + words(r.settings) + "\"," + exact(r.cpu_seconds) + "," + exact(r.spearman) +
-            "," + exact(r.kendall) + ",\"";
+    text += fmt::format("{},\"{}\",{},{},{},\"", r.name, words(r.settings), exact(r.cpu_seconds),
+                        exact(r.spearman), exact(r.kendall));
     for (size_t k = 0; k < r.objectives.size(); ++k)
       text += (k > 0 ? " " : "") + (std::isfinite(r.objectives[k]) ? fixed(r.objectives[k], 4) : "-");
     text += "\"\n";

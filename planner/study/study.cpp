@@ -1,11 +1,11 @@
 #include "planner/study/study.hpp"
 
+#include <fmt/format.h>
 #include <time.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -126,14 +126,9 @@ StudyRun run_drape(const DrapeProblem& problem, const Schedule& schedule,
   run.reason = drape.score.reason;
   run.objective = drape.score.objective;
   if (!run.valid) return run;
-  const Score& score = drape.score;
-  run.figures = {{"gap", score.max_gap},
-                 {"rms_gap", score.rms_gap},
-                 {"boundary_offset", score.max_boundary_offset},
-                 {"rms_boundary_offset", score.rms_boundary_offset},
-                 {"wrinkled_area", score.wrinkled_area},
-                 {"max_shear_deg", score.max_shear_deg},
-                 {"objective", score.objective}};
+  for (const ScorePart& part : kScoreParts) {
+    if (part.study != nullptr) run.figures[part.study] = drape.score.*part.value;
+  }
   add_fields(mesh, where, drape.run.final, run);
   return run;
 }
@@ -159,6 +154,11 @@ StudyRun run_free(const Case& definition) {
     run.figures[model.scene().grips[k].name + " force"] = result.final.grip_force[k].norm();
   add_fields(mesh, feet(mesh, definition.ply), result.final, run);
   return run;
+}
+
+bool leads_scores(const std::string& figure) {
+  return std::any_of(kScoreParts.begin(), kScoreParts.end(),
+                     [&figure](const ScorePart& part) { return part.leads && figure == part.study; });
 }
 
 double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -247,7 +247,7 @@ std::vector<Schedule> StudySubject::schedules(int count) const {
   const Strokes wave = wave_strokes(frame);
   std::vector<Schedule> result{to_schedule(frame, uniform_strokes(frame)), to_schedule(frame, wave)};
   const WaveFamily waves(frame);
-  const GripperFamily free(frame, wave, false);
+  const GripperFamily free(frame, wave);
   constexpr double kReach = 0.5;  // of the box of starts, around the baseline wave
   const Eigen::VectorXd middle = free.encode_base();
   for (int k = 1; int(result.size()) < count; ++k) {
@@ -322,7 +322,7 @@ std::map<std::string, double> study_errors(const std::vector<StudyRun>& runs,
     for (const auto& [name, value] : reference[k].figures) {
       const double error = std::abs(runs[k].figures.at(name) - value);
       keep(name, error);
-      const bool leads = !drapes || name == "gap" || name == "boundary_offset";
+      const bool leads = !drapes || leads_scores(name);
       if (leads && value != 0) keep("relative", error / std::abs(value));
       if (leads && value != 0) keep("relative_" + name, error / std::abs(value));
     }
@@ -333,9 +333,7 @@ std::map<std::string, double> study_errors(const std::vector<StudyRun>& runs,
 }
 
 std::string rounded_length(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g mm", 1e3 * value);
-  return text;
+  return fmt::format("{:.4g} mm", 1e3 * value);
 }
 
 double StudyPoint::mean(double StudyRun::*member) const {

@@ -80,7 +80,7 @@ double rms_distance(const std::vector<Eigen::Vector3d>& a, const std::vector<Eig
 
 /// Errors of a run against the reference's, by name: "gap", "boundary_offset", ... (figures) [SI],
 /// "places" (r.m.s. distance) [m], "shear_deg" (r.m.s.) [deg], and "relative", the largest relative error of
-/// the leading figures: of a drape the largest gap and boundary offset, else all. Of several runs the
+/// the leading figures: of a drape the leading parts of its score, else all. Of several runs the
 /// largest of each. Empty if a run is not valid.
 std::map<std::string, double> study_errors(const std::vector<StudyRun>& runs,
                                            const std::vector<StudyRun>& reference, bool drapes);

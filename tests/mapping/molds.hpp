@@ -4,22 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "mapping/article_mold.hpp"
 #include "mapping/mold.hpp"
 
 namespace drapeplan {
-
-/// [Krogh], Eq. (1).
-inline Mold article_mold() {
-  return Mold(PolynomialShape{{{1, 0, 1.004},
-                               {0, 1, 1.089},
-                               {2, 0, -3.667},
-                               {1, 1, -4.4},
-                               {0, 2, -3.75},
-                               {3, 0, 3.086},
-                               {2, 1, 8.889},
-                               {0, 3, 4.321}}},
-              {{0, 0}, {0.45, 0.45}});
-}
 
 inline Mold inclined_plane(double angle) {
   return Mold(PlaneShape{angle}, {{-0.5, -0.5}, {0.5, 0.5}});

@@ -21,7 +21,7 @@ std::array<double, 2> lifted(int across, int around) {
   const double load = 0.8;  // per length, dead
   const test::Sheet sheet{21e6, 0.03, 1};
   Scene scene;
-  scene.mesh = test::grid(around, across, [](double u, double v) {
+  scene.mesh = grid_mesh(around, across, [](double u, double v) {
     const double r = kOuter - v * (kOuter - kInner), angle = 2 * std::numbers::pi * u;
     return Eigen::Vector2d(r * std::cos(angle), r * std::sin(angle));
   });

@@ -1,36 +1,18 @@
-// What verification tests share: grids, strips, coming to rest, printing figures.
+// What verification tests share: strips, coming to rest, printing figures.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <string>
 
+#include "fem/mesh/grid.hpp"
 #include "fem/model/model.hpp"
 #include "fem/run/workspace.hpp"
 #include "tests/fem/run/scenes.hpp"
 
 namespace drapeplan::test {
-
-/// Grid of nu by nv quadrilaterals; node (i, j) = j (nu + 1) + i lies at place(i / nu, j / nv).
-inline Mesh grid(int nu, int nv, const std::function<Eigen::Vector2d(double, double)>& place) {
-  Mesh mesh;
-  const auto node = [nu](int i, int j) { return j * (nu + 1) + i; };
-  for (int j = 0; j <= nv; ++j) {
-    for (int i = 0; i <= nu; ++i) mesh.rest.push_back(place(double(i) / nu, double(j) / nv));
-  }
-  for (int j = 0; j < nv; ++j) {
-    for (int i = 0; i < nu; ++i)
-      mesh.quads.push_back({node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)});
-  }
-  for (int i = 0; i < nu; ++i) mesh.outline.push_back(node(i, 0));
-  for (int j = 0; j < nv; ++j) mesh.outline.push_back(node(nu, j));
-  for (int i = nu; i > 0; --i) mesh.outline.push_back(node(i, nv));
-  for (int j = nv; j > 0; --j) mesh.outline.push_back(node(0, j));
-  return mesh;
-}
 
 /// An isotropic sheet without lateral contraction: G = E / 2, in the section too.
 struct Sheet {
@@ -56,7 +38,7 @@ inline constexpr double kCantilever = 3.516;
 /// damping is critical for the lowest bending mode.
 inline Scene cantilever(const Sheet& sheet, double length, double width, int n) {
   Scene scene;
-  scene.mesh = grid(n, 1, [=](double u, double v) { return Eigen::Vector2d(u * length, v * width); });
+  scene.mesh = grid_mesh(n, 1, [=](double u, double v) { return Eigen::Vector2d(u * length, v * width); });
   scene.fabric = sheet.fabric();
   scene.options.mass_scaling = 1;
   scene.damping = 2 * sheet.frequency(kCantilever, length);

@@ -14,7 +14,7 @@ enum class Push { uniform, central };
 /// Deflection at the middle, in units of q a^4 / D or P a^2 / D.
 double coefficient(Edge edge, Push push, int n, double expected) {
   Scene scene;
-  scene.mesh = test::grid(n, n, [](double u, double v) { return Eigen::Vector2d(u, v); });
+  scene.mesh = grid_mesh(n, n, [](double u, double v) { return Eigen::Vector2d(u, v); });
   scene.fabric = kPlate.fabric();
   scene.options.mass_scaling = 1;
   (edge == Edge::supported ? scene.pinned : scene.clamped) = scene.mesh.outline;

@@ -155,14 +155,12 @@ TEST(Strategy, EveryMemberOfBothFamiliesIsSoundAndNotTooLong) {
     const Strokes wave = waves.decode(random_point(WaveFamily::kDimension, seed));
     expect_sound(frame, wave);
     EXPECT_LE(last_end(wave), frame.longest_sequence + 1e-9);
-    for (const bool own : {false, true}) {
-      const GripperFamily grippers(frame, wave, own);
-      const Strokes strokes = grippers.decode(random_point(grippers.dimension(), seed + 1000));
-      expect_sound(frame, strokes);
-      EXPECT_LE(last_end(strokes), frame.longest_sequence + 1e-9);
-      EXPECT_GE(*std::min_element(strokes.duration.begin(), strokes.duration.end()),
-                frame.shortest_stroke - 1e-9);
-    }
+    const GripperFamily grippers(frame, wave);
+    const Strokes strokes = grippers.decode(random_point(grippers.dimension(), seed + 1000));
+    expect_sound(frame, strokes);
+    EXPECT_LE(last_end(strokes), frame.longest_sequence + 1e-9);
+    EXPECT_GE(*std::min_element(strokes.duration.begin(), strokes.duration.end()),
+              frame.shortest_stroke - 1e-9);
   }
 }
 
@@ -185,11 +183,9 @@ TEST(Strategy, EncodedBaselinesAreTheSameSchedulesInEveryFamily) {
   EXPECT_TRUE(equal(waves.decode(waves.encode(flat)), uniform_strokes(frame)));
   EXPECT_TRUE(equal(waves.decode(waves.encode(baseline_wave(frame))), wave_strokes(frame)));
   for (const Strokes& base : {uniform_strokes(frame), wave_strokes(frame)}) {
-    for (const bool own : {false, true}) {
-      const GripperFamily grippers(frame, base, own);
-      EXPECT_EQ(grippers.encode_base().size(), grippers.dimension());
-      EXPECT_TRUE(equal(grippers.decode(grippers.encode_base()), base));
-    }
+    const GripperFamily grippers(frame, base);
+    EXPECT_EQ(grippers.encode_base().size(), grippers.dimension());
+    EXPECT_TRUE(equal(grippers.decode(grippers.encode_base()), base));
   }
 }
 

@@ -69,6 +69,15 @@ TEST(HtmlReport, OneRowHasNothingToStandOutFrom) {
   EXPECT_FALSE(contains(html_report(report), "class=\"best\""));
 }
 
+TEST(ConsoleTable, HasAColumnForEveryComparedPartAndARowForEverySequence) {
+  const std::string table = console_table({row("uniform", 0.0122), {"failed", failed_score("diverged")}});
+  EXPECT_TRUE(contains(table, "       gap r.m.s. gap"));
+  EXPECT_TRUE(contains(table, "[cm\u00b2]"));
+  EXPECT_TRUE(contains(table, "\nuniform                           12.20       0.00        0.0"));
+  EXPECT_TRUE(contains(table, "\nfailed                        diverged\n"));
+  EXPECT_FALSE(contains(table, "actuator"));
+}
+
 TEST(HtmlReport, EmptyPartsAreLeftOut) {
   const std::string page = html_report({});
   EXPECT_FALSE(contains(page, "<h2>"));

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "planner/base/parallel.hpp"
+#include "planner/drape/scoring.hpp"
 #include "planner/search/batch_evaluate.hpp"
 
 namespace drapeplan {
@@ -183,7 +184,9 @@ TEST(BatchEvaluate, WritesABatchInItsOrderAndTurnsExceptionsIntoFailures) {
     EXPECT_EQ(outcomes[4].score.objective, 1);
     EXPECT_TRUE(outcomes[4].cached);
     EXPECT_EQ(outcomes[2].score.reason, "no such mold");
+    EXPECT_EQ(outcomes[2].score.objective, kFailedObjective);
     EXPECT_FALSE(outcomes[3].score.valid);
+    EXPECT_EQ(outcomes[3].score.objective, kFailedObjective);
     const auto lines = log.evaluations();
     ASSERT_EQ(lines.size(), 5u);
     const int order[] = {0, 1, 2, 3, 5};

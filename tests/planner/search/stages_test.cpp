@@ -123,16 +123,6 @@ TEST(StagedSearch, TheStageOverGrippersGainsWhereNoWaveFits) {
   EXPECT_LE(gripper, 0.5 * wave);
 }
 
-TEST(StagedSearch, OwnStrokesOfEveryGripperGainToo) {
-  const SequenceFrame frame = frame_of(5, 5);
-  StagedOptions options = options_of(120, 600);
-  options.own_strokes = true;
-  EvaluationLog log;
-  const StagedResult result = search(frame, options, log);
-  EXPECT_TRUE(result.beats_baselines) << result.message;
-  EXPECT_LE(deviation(frame, result.best.schedule), 0.4 * deviation(frame, result.wave.schedule));
-}
-
 TEST(StagedSearch, ResultDoesNotDependOnTheNumberOfThreads) {
   const SequenceFrame frame = frame_of(3, 3);
   StagedOptions one = options_of(60, 80), two = options_of(60, 80);

@@ -1,0 +1,52 @@
+#include "planner/drape/score.hpp"
+
+#include <fmt/format.h>
+
+#include "planner/base/text.hpp"
+
+namespace drapeplan {
+namespace {
+
+static_assert(
+    [] {
+      for (const ScorePart& part : kScoreParts) {
+        if (part.leads && part.study == nullptr) return false;
+      }
+      return true;
+    }(),
+    "a leading part is compared by the study");
+
+/// Adds "largest gap 3.15 mm" to a list.
+void append(const ScorePart& part, const Score& score, std::string& list) {
+  if (!list.empty()) list += "; ";
+  list += fmt::format("{} {}", part.label, value_text(part, score));
+  if (*part.unit != '\0') list += fmt::format(" {}", part.unit);
+}
+
+}  // namespace
+
+std::string title_of(const ScorePart& part) {
+  return *part.unit == '\0' ? part.label : fmt::format("{} [{}]", part.label, part.unit);
+}
+
+std::string value_text(const ScorePart& part, const Score& score) {
+  return fixed(part.factor * score.*part.value, part.decimals);
+}
+
+std::string score_text(const Score& score) {
+  if (!score.valid) return score.reason;
+  std::string list;
+  for (const ScorePart& part : kScoreParts) append(part, score, list);
+  return list;
+}
+
+std::string short_score_text(const Score& score) {
+  if (!score.valid) return score.reason;
+  std::string list;
+  for (const ScorePart& part : kScoreParts) {
+    if (part.leads || part.value == &Score::objective) append(part, score, list);
+  }
+  return list;
+}
+
+}  // namespace drapeplan
