@@ -64,11 +64,10 @@ struct Progress {
 };
 
 /// Minimises the objective over schedules in three stages.
-/// 1 wave     screens the baselines and eleven waves, then NLopt from the best of them;
+/// 1 wave     screens the baselines and up to nine waves, then NLopt from the best of them;
 /// 2 gripper  CMA-ES over all grippers' strokes, with a small first step, from the best of stage 1;
-/// 3 report   the baselines, the best few different schedules and the centre of the last search distribution
-/// are
-///            evaluated at the reporting fidelity; the best there wins.
+/// 3 report   the baselines, the best few different schedules and the centre of the last search
+///            distribution are evaluated at the reporting fidelity; the best there wins.
 /// The result depends on frame, options and evaluate only: not on threads, nor on what was served from a log.
 /// @param evaluate  safe to call concurrently.
 /// @param progress  called after each evaluation, one call at a time, from any thread; may be empty.
