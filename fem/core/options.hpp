@@ -29,7 +29,7 @@ struct FemOptions {
   /// Damping ratio along the fibres at the highest frequency. A fibre that is stiffer in tension than in
   /// compression is a spring with two stiffnesses, which central differences feed in narrow windows of the
   /// step from 0.4 of the stable one on. With a ratio of 0.1 and up to 0.95 of the stable step (which the
-  /// ratio lowers to 0.905) none is left, whatever the two stiffnesses (scanned: fem/README.md).
+  /// ratio lowers to 0.905) none is left, whatever the two stiffnesses (scanned: tests/bench/fem.md).
   double bulk_viscosity = 0.1;
   double contact_stiffness = 0.05;  ///< of a free node, over its membrane stiffness
   double contact_damping = 0.2;     ///< share of the critical damping of a node on its contact spring

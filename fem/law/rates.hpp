@@ -133,7 +133,7 @@ class RateSlopes {
   /// The rate of the angle is that of its sine over its cosine.
   DRAPEPLAN_INLINE [[nodiscard]] Lanes shear_gain(const Lanes& sine) const {
     namespace stdx = std::experimental;
-    constexpr double kLeastCosine2 = 0.04;  // 78.5 degrees: where the table of the shear stress ends
+    constexpr double kLeastCosine2 = 0.04;  // about where the table of the shear stress ends
     Lanes cosine, inverse;
     root_and_inverse(stdx::max(Lanes(1.0) - sine * sine, Lanes(kLeastCosine2)), cosine, inverse);
     return Lanes(tables_.gain) * inverse;

@@ -31,8 +31,8 @@ inline auto fields_of(const Mesh& of) {
 Mesh rectangle_mesh(double width, double height, double mesh_size);
 
 /// The same with mesh lines through given places (pads must cover the same piece of ply on every mesh): equal
-/// cells between them, at most `mesh_size`. A margin outside them narrower than half a cell joins the cell
-/// beside it, so that no sliver sets the step; such a cell is then up to half a cell wider.
+/// cells between them, at most `mesh_size`. A margin outside them narrower than 0.75 of the cell beside
+/// it joins that cell, so that no sliver sets the step; such a cell is then up to 0.75 of a cell wider.
 /// @param u, v  increasing places inside the ply [m]; empty: equal cells over the whole length.
 Mesh rectangle_mesh(double width, double height, double mesh_size, const std::vector<double>& u,
                     const std::vector<double>& v);

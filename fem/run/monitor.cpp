@@ -163,7 +163,7 @@ bool Monitor::look(State& state, RunSummary& summary) {
   return false;
 }
 
-// The distance to the tangent plane at the vertical foot (5e-8 m on the article's mold) tells who is worth
+// The distance to the tangent plane at the vertical foot tells who is worth
 // asking.
 void Monitor::note_penetration(State& state) {
   slid_ = 0;

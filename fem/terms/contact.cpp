@@ -12,7 +12,7 @@ constexpr double kSteepest2 = kSteepestContact * kSteepestContact;
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 
 /// Nodes within this share of the half thickness above the surface get the second evaluation. The tangent
-/// plane at the vertical foot errs by curvature (t tan(slope))^2 / 8 only: 1e-8 m on the article's mold.
+/// plane at the vertical foot errs by curvature (t tan(slope))^2 / 8 only (figures: tests/bench/fem.md).
 constexpr double kNear = 0.1;
 
 /// Sliding this many times faster than it approaches, a node that touches anew slides, whatever the

@@ -44,7 +44,7 @@ class FibreInertia {
   /// @param rate      highest rate that the stretch of an edge may have [1/s]
   /// @param mobility  1 / mass of nodes that are on their own, 0 where they are held [1/kg, padded]
   /// @param tied      nodes of each pad: while it holds them, an edge there pulls as if the pad did not
-  ///                  accelerate, which is not quite symmetric: see fem/README.md for what that limits
+  ///                  accelerate, which is not quite symmetric: see tests/bench/fem.md for what that limits
   FibreInertia(const Mesh& mesh, const std::vector<char>& with_fibre_inertia, double stretch, double rate,
                std::vector<double> mobility, std::vector<std::vector<int>> tied);
 

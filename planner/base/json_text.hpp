@@ -1,5 +1,5 @@
-// JSON documents in and out. What comes in is held to one set of rules and keeps the line of every value; what goes out
-// is valid UTF-8, whatever bytes its texts have.
+// JSON documents in and out. What comes in is held to one set of rules and keeps the line of every value;
+// what goes out is valid UTF-8, whatever bytes its texts have.
 #pragma once
 
 #include <map>
@@ -27,9 +27,9 @@ struct ParsedText {
   std::vector<TextFault> faults;
 };
 
-/// Parses JSON (RFC 8259, no comments) in UTF-8 without a byte order mark. Faults too: a number that no double can
-/// hold, a key that appears twice in an object, a NUL character, nesting deeper than 64 levels. Never throws for bad
-/// input.
+/// Parses JSON (RFC 8259, no comments) in UTF-8 without a byte order mark. Faults too: a number that no
+/// double can hold, a key that appears twice in an object, a NUL character, nesting deeper than 64 levels.
+/// Never throws for bad input.
 ParsedText parse_json_text(std::string_view text);
 
 /// The value of a text that is held to the same rules, such as a line of a log.

@@ -30,7 +30,8 @@ Character first_character(std::string_view text) {
     if ((byte(k) & 0xC0U) != 0x80) return {};
     code = code << 6U | (byte(k) & 0x3FU);
   }
-  constexpr std::array<char32_t, 5> kSmallest{0, 0, 0x80, 0x800, 0x10000};  // below it: a longer form than needed
+  constexpr std::array<char32_t, 5> kSmallest{0, 0, 0x80, 0x800,
+                                              0x10000};  // below it: a longer form than needed
   const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
   if (code < kSmallest[bytes] || surrogate || code > 0x10FFFF) return {};
   return {code, bytes};

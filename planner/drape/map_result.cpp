@@ -53,7 +53,8 @@ std::string placement_warning(const Case& definition, const Placement& placement
                                    ? "the target of gripper " + definition.grippers->name(placement.gripper)
                                    : "a corner of the ply";
   return fmt::format(
-      "the mapping lays the ply elsewhere than ply.position and ply.angle say: shifted by {:.1f} mm and turned "
+      "the mapping lays the ply elsewhere than ply.position and ply.angle say: shifted by {:.1f} mm and "
+      "turned "
       "by {:.1f} deg, its warp at the start by {:.1f} deg. Shift and turn alone move {} up to {:.1f} mm in "
       "plan; {} stands {:.1f} mm beside its flat place. Check mapping.generators, mapping.start and "
       "mapping.ply_start",

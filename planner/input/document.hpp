@@ -1,5 +1,5 @@
-// An input file as one JSON value, with the files that it refers to put in place and its overrides applied, and
-// for every value the place where it was written.
+// An input file as one JSON value, with the files that it refers to put in place and its overrides applied,
+// and for every value the place where it was written.
 #pragma once
 
 #include <filesystem>
@@ -13,8 +13,8 @@
 
 namespace drapeplan {
 
-/// Keys of a case's root whose value may be the name of a JSON file instead of an object, relative to the case
-/// file.
+/// Keys of a case's root whose value may be the name of a JSON file instead of an object, relative to the
+/// case file.
 const std::vector<std::string>& keys_that_may_name_files();
 
 class InputDocument {
@@ -29,8 +29,8 @@ class InputDocument {
   [[nodiscard]] const std::vector<InputError>& errors() const { return errors_; }
   /// Whether a file should stand at `pointer` that could not be read; then errors() says so.
   [[nodiscard]] bool unread(const std::string& pointer) const { return unread_.contains(pointer); }
-  /// An error about the value at `pointer` of the whole document, placed in the file where that value stands (or,
-  /// if it is missing, the value around it).
+  /// An error about the value at `pointer` of the whole document, placed in the file where that value stands
+  /// (or, if it is missing, the value around it).
   [[nodiscard]] InputError error_at(const std::string& pointer, std::string message) const;
   /// Sorts errors into the order of the files and lines, overrides last.
   void sort(std::vector<InputError>& errors) const;

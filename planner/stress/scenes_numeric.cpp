@@ -70,7 +70,7 @@ void add_steps(Scenes& scenes) {
         strip_scene("step", number_text(share) + " of the estimate: woven strip", woven_strip(share)));
     scenes.back().bisect = share == 0.9;
     scenes.back().fast = share == 0.95;
-    // Bulk viscosity leaves no window of growth up to 0.95 (fem/README.md).
+    // Bulk viscosity leaves no window of growth up to 0.95 (tests/bench/fem.md).
     if (share > 0.95) scenes.back().otherwise = Verdict::stopped, scenes.back().says = "unstable";
     scenes.push_back(drape_scene("step", number_text(share) + " of the estimate: drape",
                                  [share](StressSetup& s) { s.scene.options.step_safety = share; }));

@@ -83,7 +83,7 @@ inline State at_rest(const Model& model, double remainder) {
   return state;
 }
 
-/// Prints a figure of fem/README.md and returns its relative error.
+/// Prints a figure of tests/bench/fem.md and returns its relative error.
 inline double figure(const std::string& what, double computed, double published) {
   const double error = computed / published - 1;
   std::printf("  %-44s computed %.6g  published %.6g  error %+.3f %%\n", what.c_str(), computed, published,

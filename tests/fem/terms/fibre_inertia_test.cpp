@@ -394,7 +394,7 @@ TEST(FibreInertia, MakesFewerStepsAndTheSameDrape) {
   const double fewer = double(runs[0].summary.steps) / double(runs[1].summary.steps);
   std::printf("%.2f times fewer steps, %.3f mm apart\n", fewer, 1e3 * apart);
   EXPECT_GE(fewer, 2.2);    // 4 over what the estimate for the state gains on the steepest slopes
-  EXPECT_LE(apart, 0.002);  // a move of the start by 1e-12 m does up to 0.5 mm: fem/README.md
+  EXPECT_LE(apart, 0.002);  // a move of the start by 1e-12 m does up to 0.5 mm: tests/bench/fem.md
 }
 
 // Two by two light grippers hold nothing but each other: what is not symmetric about the mass of edges at
