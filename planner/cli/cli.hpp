@@ -29,11 +29,7 @@ struct CommonOptions {
 /// What the chosen verb does; returns the exit code. Set while the command line is parsed, called afterwards.
 using Action = std::function<int()>;
 
-<<<<<<< HEAD
-/// One function per verb, in <verb>.cpp. `action` must outlive the parsing.
-=======
 /// One function per verb, in planner/cli/<verb>.cpp. `action` must outlive the parsing.
->>>>>>> readme
 void add_check(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);
 void add_explain(CLI::App& program, Action& action);

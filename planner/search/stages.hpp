@@ -55,19 +55,12 @@ struct Progress {
 };
 
 /// Minimises the objective over schedules in three stages.
-<<<<<<< HEAD
-/// 1 wave     screens the baselines and eleven waves, then NLopt from the best of them;
+/// 1 wave     screens the baselines and up to nine waves, then NLopt from the best of them;
 /// 2 gripper  CMA-ES over the starts of all grippers' strokes and one factor on their durations, with a small
 ///            first step, from the best of stage 1. On synthetic objectives, also one that asks for different
 ///            durations, one common factor came closer with up to 750 evaluations than a duration for each;
 /// 3 report   the baselines, the best few different schedules and the centre of the last search distribution
 ///            are evaluated at the reporting fidelity; the best there wins.
-=======
-/// 1 wave     screens the baselines and up to nine waves, then NLopt from the best of them;
-/// 2 gripper  CMA-ES over all grippers' strokes, with a small first step, from the best of stage 1;
-/// 3 report   the baselines, the best few different schedules and the centre of the last search
-///            distribution are evaluated at the reporting fidelity; the best there wins.
->>>>>>> readme
 /// The result depends on frame, options and evaluate only: not on threads, nor on what was served from a log.
 /// @param evaluate  safe to call concurrently.
 /// @param progress  called after each evaluation, one call at a time, from any thread; may be empty.
