@@ -191,7 +191,7 @@ double growth_at(Scene scene, double share) {
   State state = flat(model);
   test::disturb(state, model.node_count(), 1e-10, 1e-9);
   for (const int n : scene.clamped) {
-    test::put(state.position, size_t(n), test::get(flat(model).x, size_t(n)));
+    test::put(state.position, size_t(n), test::get(flat(model).position, size_t(n)));
     test::put(state.director, size_t(n), Eigen::Vector3d::UnitZ());
   }
   Workspace work(model);
