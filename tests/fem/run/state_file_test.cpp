@@ -281,18 +281,18 @@ class StateOfADrape : public StateFile {
 TEST_F(StateOfADrape, IsTakenUnderAScheduleThatDiffersOnlyLater) {
   expect_taken(schedule);
   Schedule later = schedule;
-  add_knot(later.paths[2], kPause);
+  add_knot(later.paths[0], kPause);
   expect_taken(later);
-  delay(later.paths[2]);
+  delay(later.paths[0]);
   later.release[1] = 1.0;
   later.release[3].reset();
   expect_taken(later);
 }
 
 TEST_F(StateOfADrape, GoesOnAsIfTheLaterPartHadAlwaysBeenSo) {
-  add_knot(schedule.paths[2], kPause);
+  add_knot(schedule.paths[0], kPause);
   Schedule later = schedule;
-  delay(later.paths[2]);
+  delay(later.paths[0]);
   save_state(file, drape_model, simulate(drape_model, {.schedule = &schedule, .pause = kPause}).state,
              &schedule);
   const StateReading reading = load_state(file, drape_model, &later);
