@@ -7,6 +7,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "mapping/error.hpp"
+
 namespace drapeplan {
 namespace {
 
@@ -58,7 +60,7 @@ Eigen::Vector3d tangent(const Mold& mold, const Eigen::Vector2d& at, const Eigen
 [[noreturn]] void throw_at(const char* what, const Eigen::Vector2d& at) {
   std::ostringstream text;
   text << what << " (x, y) = (" << at.x() << ", " << at.y() << ") m";
-  throw std::domain_error(text.str());
+  throw NotFinished(text.str());
 }
 
 // Shooting: a fixed number of steps, so that the end point is a smooth function of angle and length. 256

@@ -18,12 +18,12 @@ struct Geodesic {
 /// `direction`. Integrates the geodesic equation of the height field with the classical fourth-order
 /// Runge-Kutta method.
 /// @param step   distance between points [m], > 0;  @param count  number of steps, >= 0.
-/// @throws std::domain_error where the mold is not defined along the way.
+/// @throws NotFinished where the mold is not defined along the way.
 Geodesic shoot_geodesic(const Mold& mold, const Eigen::Vector2d& start, const Eigen::Vector2d& direction,
                         double step, int count);
 
 /// Direction (unit, in the x-y plane) of the geodesic from `start` that passes through `goal`.
-/// @throws std::domain_error if the shooting iteration does not converge.
+/// @throws NotFinished if the shooting iteration does not converge.
 Eigen::Vector2d geodesic_direction(const Mold& mold, const Eigen::Vector2d& start,
                                    const Eigen::Vector2d& goal);
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "mapping/error.hpp"
+
 namespace drapeplan {
 namespace {
 
@@ -136,16 +138,15 @@ Eigen::MatrixXd dense_coefficients(const PolynomialShape& shape) {
   int rows = 1, cols = 1;
   for (const PolynomialShape::Term& term : shape.terms) {
     if (term.i < 0 || term.j < 0 || term.i > kHighestPower || term.j > kHighestPower) {
-      throw std::invalid_argument("mold: power of a polynomial term must lie in 0.." +
-                                  std::to_string(kHighestPower) + ", got x^" + std::to_string(term.i) +
-                                  " y^" + std::to_string(term.j));
+      throw WrongInput("mold: power of a polynomial term must lie in 0.." + std::to_string(kHighestPower) +
+                       ", got x^" + std::to_string(term.i) + " y^" + std::to_string(term.j));
     }
     rows = std::max(rows, term.i + 1);
     cols = std::max(cols, term.j + 1);
   }
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(rows, cols);
   for (const PolynomialShape::Term& term : shape.terms) dense(term.i, term.j) += term.coefficient;
-  if (!dense.allFinite()) throw std::invalid_argument("mold: a polynomial coefficient is not finite");
+  if (!dense.allFinite()) throw WrongInput("mold: a polynomial coefficient is not finite");
   return dense;
 }
 
@@ -248,20 +249,19 @@ void cylinder_heights(const CylinderShape& shape, int n, const double* __restric
 
 void check_radius(const char* shape, double radius) {
   if (!(radius > 0) || !std::isfinite(radius)) {
-    throw std::invalid_argument(std::string("mold: radius of the ") + shape + " must be > 0 m, got " +
-                                std::to_string(radius));
+    throw WrongInput(std::string("mold: radius of the ") + shape + " must be > 0 m, got " +
+                     std::to_string(radius));
   }
 }
 
 void check_centre(const char* shape, const Eigen::Vector3d& centre) {
-  if (!centre.allFinite())
-    throw std::invalid_argument(std::string("mold: centre of the ") + shape + " is not finite");
+  if (!centre.allFinite()) throw WrongInput(std::string("mold: centre of the ") + shape + " is not finite");
 }
 
 void check(const Extent& extent) {
   if (!extent.lower.allFinite() || !extent.upper.allFinite() ||
       !(extent.upper.array() > extent.lower.array()).all()) {
-    throw std::invalid_argument("mold: extent is empty");
+    throw WrongInput("mold: extent is empty");
   }
 }
 
@@ -276,27 +276,27 @@ Overload(Ts...) -> Overload<Ts...>;
 
 Mold::Mold(Shape shape, Extent extent) : shape_(std::move(shape)), extent_(std::move(extent)) {
   check(extent_);
-  std::visit(Overload{
-                 [](const PlaneShape& s) {
-                   if (!(std::abs(s.angle) < std::numbers::pi / 2)) {
-                     throw std::invalid_argument("mold: |angle| of the plane must be < pi/2, got " +
-                                                 std::to_string(s.angle));
-                   }
-                 },
-                 [this](const PolynomialShape& s) { dense_ = dense_coefficients(s); },
-                 [](const SphereShape& s) {
-                   check_centre("sphere", s.centre);
-                   check_radius("sphere", s.radius);
-                 },
-                 [](const CylinderShape& s) {
-                   check_centre("cylinder", s.centre);
-                   check_radius("cylinder", s.radius);
-                   if (!std::isfinite(s.azimuth)) {
-                     throw std::invalid_argument("mold: azimuth of the cylinder is not finite");
-                   }
-                 },
-             },
-             shape_);
+  std::visit(
+      Overload{
+          [](const PlaneShape& s) {
+            if (!(std::abs(s.angle) < std::numbers::pi / 2)) {
+              throw WrongInput("mold: |angle| of the plane must be < pi/2, got " + std::to_string(s.angle));
+            }
+          },
+          [this](const PolynomialShape& s) { dense_ = dense_coefficients(s); },
+          [](const SphereShape& s) {
+            check_centre("sphere", s.centre);
+            check_radius("sphere", s.radius);
+          },
+          [](const CylinderShape& s) {
+            check_centre("cylinder", s.centre);
+            check_radius("cylinder", s.radius);
+            if (!std::isfinite(s.azimuth)) {
+              throw WrongInput("mold: azimuth of the cylinder is not finite");
+            }
+          },
+      },
+      shape_);
 }
 
 Jet Mold::jet(double x, double y) const {

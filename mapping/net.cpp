@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "mapping/cell.hpp"
+#include "mapping/error.hpp"
 #include "mapping/geodesic.hpp"
 
 namespace drapeplan {
@@ -25,27 +26,27 @@ using HalfLines = std::array<Eigen::Vector2d, 4>;
 
 [[noreturn]] void throw_at(const char* what, const Eigen::Vector3d& at) {
   std::ostringstream text;
-  text << "mapping: " << what << " (x, y) = (" << at.x() << ", " << at.y() << ") m";
-  throw std::domain_error(text.str());
+  text << "the ply cannot be mapped: " << what << " (x, y) = (" << at.x() << ", " << at.y() << ") m";
+  throw NotFinished(text.str());
 }
 
 void check(const Ply& ply, const MappingOptions& options) {
   if (ply.outline.empty() && !(std::min(ply.width, ply.height) > 0)) {
-    throw std::invalid_argument("mapping: the ply's width and height must be > 0 m");
+    throw WrongInput("mapping: the ply's width and height must be > 0 m");
   }
   const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
   if (!(box.sizes().minCoeff() > 0) || !box.sizes().allFinite())
-    throw std::invalid_argument("mapping: the ply has no area");
-  if (!std::isfinite(ply.angle)) throw std::invalid_argument("mapping: the ply's angle is not finite");
-  if (!(options.cell_size > 0)) throw std::invalid_argument("mapping: cell_size must be > 0 m");
+    throw WrongInput("mapping: the ply has no area");
+  if (!std::isfinite(ply.angle)) throw WrongInput("mapping: the ply's angle is not finite");
+  if (!(options.cell_size > 0)) throw WrongInput("mapping: cell_size must be > 0 m");
   const Eigen::Vector2d cells = box.sizes() / options.cell_size;
   if (!((cells.x() + 3) * (cells.y() + 3) <= kMostNodes)) {
-    throw std::invalid_argument("mapping: cell_size " + std::to_string(options.cell_size) +
-                                " m gives a net of too many nodes");
+    throw WrongInput("mapping: cell_size " + std::to_string(options.cell_size) +
+                     " m gives a net of too many nodes");
   }
   const Eigen::Vector2d from_middle = (options.ply_start - box.center()).cwiseAbs();
   if (!((from_middle - (0.5 + kRoundOff) * box.sizes()).maxCoeff() <= 0)) {
-    throw std::invalid_argument("mapping: ply_start lies outside the ply");
+    throw WrongInput("mapping: ply_start lies outside the ply");
   }
 }
 

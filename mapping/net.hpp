@@ -51,7 +51,7 @@ Polygon corners_of(const Ply& ply);
 /// Maps the ply's bounding box onto the mold. [Krogh], "Energy Mapping Algorithm" (after Bergsma and
 /// Huisman): the fibre lines through the start point are geodesics; every other node is the free corner of a
 /// bilinear element that minimises the fibre strain energy of Eq. (3).
-/// @throws std::domain_error with the place where the mold ends or the minimisation fails.
+/// @throws NotFinished with the place where the mold ends or the minimisation fails.
 Net map_ply(const Mold& mold, const Ply& ply, const MappingOptions& options);
 
 /// Mapped place of the ply point (u, v) [m]: bicubic in x-y between net nodes, then put on the mold.

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "fem/mesh/lines.hpp"
+#include "mapping/error.hpp"
 
 namespace drapeplan {
 
@@ -44,7 +45,7 @@ Mesh rectangle_mesh(double width, double height, double mesh_size) {
 Mesh rectangle_mesh(double width, double height, double mesh_size, const std::vector<double>& u,
                     const std::vector<double>& v) {
   if (!(width > 0 && height > 0 && mesh_size > 0))
-    throw std::invalid_argument("rectangle_mesh: lengths must be positive");
+    throw WrongInput("rectangle_mesh: lengths must be positive");
   const std::vector<double> x = mesh_lines(-0.5 * width, 0.5 * width, mesh_size, u);
   const std::vector<double> y = mesh_lines(-0.5 * height, 0.5 * height, mesh_size, v);
   const int nx = int(x.size()) - 1, ny = int(y.size()) - 1;

@@ -19,6 +19,7 @@
 
 #include "fem/mesh/lines.hpp"
 #include "fem/mesh/mesh.hpp"
+#include "mapping/error.hpp"
 
 namespace drapeplan {
 namespace {
@@ -43,9 +44,9 @@ constexpr double kSmallestStep = 0.3;
 enum class Side { out, on, in };
 
 [[noreturn]] void too_coarse(const std::string& why, const Vector2d& at, double mesh_size) {
-  throw std::invalid_argument("outline_mesh: " + why + " near (" + std::to_string(1e3 * at.x()) + ", " +
-                              std::to_string(1e3 * at.y()) + ") mm: the mesh size " +
-                              std::to_string(1e3 * mesh_size) + " mm is too large for this outline");
+  throw WrongInput("outline_mesh: " + why + " near (" + std::to_string(1e3 * at.x()) + ", " +
+                   std::to_string(1e3 * at.y()) + ") mm: the mesh size " + std::to_string(1e3 * mesh_size) +
+                   " mm is too large for this outline");
 }
 
 double cross(const Vector2d& a, const Vector2d& b) {
@@ -344,7 +345,7 @@ Mesh fitted_mesh(const Polygon& polygon, const std::vector<size_t>& corners, dou
 Mesh outline_mesh(const Polygon& outline, double mesh_size, const std::vector<double>& u,
                   const std::vector<double>& v) {
   if (outline.size() < 3 || crossing_edges(outline) || !(mesh_size > 0))
-    throw std::invalid_argument("outline_mesh: needs a simple polygon and a positive mesh size");
+    throw WrongInput("outline_mesh: needs a simple polygon and a positive mesh size");
   const Polygon polygon = counter_clockwise(outline);
   const Eigen::AlignedBox2d box = bounding_box(polygon);
   const std::vector<size_t> corners = sharp_corners(polygon);
@@ -360,7 +361,7 @@ Mesh outline_mesh(const Polygon& outline, double mesh_size, const std::vector<do
   };
   const double square = common_cell(polygon, mesh_size, lines(true, 0), lines(true, 1));
   std::optional<Mesh> best;
-  std::optional<std::invalid_argument> fault;
+  std::optional<WrongInput> fault;
   double largest = 0;
   for (const bool through_corners : {true, false}) {
     if (best && square > 0) break;
@@ -378,12 +379,12 @@ Mesh outline_mesh(const Polygon& outline, double mesh_size, const std::vector<do
         if (share <= largest) continue;
         largest = share;
         best = std::move(mesh);
-      } catch (const std::invalid_argument& error) {
+      } catch (const WrongInput& error) {
         if (!fault) fault = error;
       }
     }
   }
-  if (!best) throw std::invalid_argument(*fault);
+  if (!best) throw WrongInput(*fault);
   return std::move(*best);
 }
 

@@ -8,6 +8,7 @@
 
 #include "fem/core/hash.hpp"
 #include "fem/terms/contact.hpp"
+#include "mapping/error.hpp"
 
 namespace drapeplan {
 namespace {
@@ -78,14 +79,13 @@ double sharpest_curvature(const Mold& mold) {
 void check_mold(const Scene& scene) {
   const double radius = 1 / std::max(sharpest_curvature(*scene.mold), 1e-12), edge = longest_edge(scene.mesh);
   if (radius < kLeastRadius * edge) {
-    throw std::invalid_argument("the mold is curved with a radius of " + std::to_string(1e3 * radius) +
-                                " mm, elements are up to " + std::to_string(1e3 * edge) +
-                                " mm long: refine the mesh");
+    throw WrongInput("the mold is curved with a radius of " + std::to_string(1e3 * radius) +
+                     " mm, elements are up to " + std::to_string(1e3 * edge) + " mm long: refine the mesh");
   }
   if (scene.start != Start::on_mold) return;
   const Jet jet = scene.mold->jet(scene.position.x(), scene.position.y());
   if (!(std::hypot(jet.zx, jet.zy) < kSteepestContact)) {
-    throw std::invalid_argument(
+    throw WrongInput(
         "the ply starts where the mold is too steep, or not defined: nothing touches a height field beyond "
         "84 degrees");
   }
@@ -105,9 +105,9 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   const Mesh& mesh = scene_.mesh;
   const auto n = size_t(mesh.node_count());
   const FemOptions& options = scene_.options;
-  if (scene_.friction && !scene_.mold) throw std::invalid_argument("friction needs a mold");
+  if (scene_.friction && !scene_.mold) throw WrongInput("friction needs a mold");
   if (scene_.start == Start::on_mold && (!scene_.mold || scene_.rig)) {
-    throw std::invalid_argument("a ply that starts on the mold needs a mold, and no rig");
+    throw WrongInput("a ply that starts on the mold needs a mold, and no rig");
   }
   if (scene_.mold) check_mold(scene_);
   const std::vector<double> area = nodal_areas(mesh);
@@ -152,10 +152,10 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
   for (const int node : held) mass_[size_t(node)] = 0;
   for (const int node : scene_.pinned) mass_[size_t(node)] = 0;
   for (const Grip& grip : scene_.grips) {
-    if (grip.nodes.empty()) throw std::invalid_argument("grip " + grip.name + " holds no node");
+    if (grip.nodes.empty()) throw WrongInput("grip " + grip.name + " holds no node");
     for (const int node : grip.nodes) {
       if (mass_[size_t(node)] == 0)
-        throw std::invalid_argument("grip " + grip.name + " holds a node that is held by something else");
+        throw WrongInput("grip " + grip.name + " holds a node that is held by something else");
       mass_[size_t(node)] = 0;
       held.push_back(node);
       guided_.push_back(node);
@@ -169,14 +169,13 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
     rig_.emplace(*scene_.rig, mesh.rest, mass_, inertia_, place, scene_.angle);
     pad_nodes_ = rig_->tied_by_pad();
     for (const int node : rig_->tied()) {
-      if (mass_[size_t(node)] == 0)
-        throw std::invalid_argument("a node under a pad is clamped, pinned or gripped");
+      if (mass_[size_t(node)] == 0) throw WrongInput("a node under a pad is clamped, pinned or gripped");
     }
     held.insert(held.end(), rig_->tied().begin(), rig_->tied().end());
     guided_.insert(guided_.end(), rig_->tied().begin(), rig_->tied().end());
   }
   if (!rig_ && std::all_of(mass_.begin(), mass_.end(), [](double mass) { return mass == 0; }))
-    throw std::invalid_argument("every node of the ply is held: nothing can move; refine the mesh");
+    throw WrongInput("every node of the ply is held: nothing can move; refine the mesh");
   bear_held_nodes();
   if (scene_.mold) add_contact(stiffness);
   stable_dt_ = stable_dt(stiffness);
@@ -187,7 +186,7 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
     const double mobility = (1 + 2 * arm * arm) / scene_.rig->pad_mass;
     servo_dt_ = kServoStep / std::sqrt(scene_.rig->actuator_stiffness * mobility);
     if (dt() > servo_dt_) {
-      throw std::invalid_argument(
+      throw WrongInput(
           "the actuators are too stiff for the time step: lower grippers.actuator_stiffness or "
           "raise grippers.pad_mass");
     }
@@ -204,10 +203,10 @@ Model::Model(Scene scene) : scene_(std::move(scene)) {
 /// @return what is left.
 NodalStiffness Model::stiffness_without_fibres() {
   if (scene_.options.step_interval == 0)
-    throw std::invalid_argument("fibre_mass_scaling needs a step that is chosen anew: step_interval above 0");
+    throw WrongInput("fibre_mass_scaling needs a step that is chosen anew: step_interval above 0");
   const std::vector<char> with_fibre_inertia = shell_->with_fibre_inertia();
   if (std::none_of(with_fibre_inertia.begin(), with_fibre_inertia.end(), [](char can) { return can; }))
-    throw std::invalid_argument("fibre_mass_scaling needs elements that are rectangles along the fibres");
+    throw WrongInput("fibre_mass_scaling needs elements that are rectangles along the fibres");
   NodalStiffness fibres(node_count()), left(node_count());
   shell_->add_fibre_stiffness(fibres);
   double rate2 = 0;

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "mapping/error.hpp"
+
 namespace drapeplan {
 namespace {
 
@@ -25,7 +27,7 @@ template <class AnyKnot>
 void check_knots(const RigOptions& rig, const std::vector<std::vector<AnyKnot>>& paths) {
   for (size_t g = 0; g < paths.size(); ++g) {
     const auto fail = [&](const std::string& what) {
-      throw std::invalid_argument("the path of gripper " + rig.name(int(g)) + " " + what);
+      throw WrongInput("the path of gripper " + rig.name(int(g)) + " " + what);
     };
     if (paths[g].empty()) fail("has no knots");
     for (size_t k = 0; k < paths[g].size(); ++k) {
@@ -108,8 +110,7 @@ GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>
     }
     pad.last = int(tied_.size());
     if (pad.last == pad.first) {
-      throw std::invalid_argument("gripper " + rig.name(g) +
-                                  " has no ply node under its pad: refine the mesh");
+      throw WrongInput("gripper " + rig.name(g) + " has no ply node under its pad: refine the mesh");
     }
     lay_patches(pad);
     pads_.push_back(pad);
@@ -172,27 +173,27 @@ void GripperRig::check(const Schedule& schedule) const {
   check_knots(rig_, schedule.paths);
   check_knots(rig_, schedule.plane_paths);
   if (int(schedule.paths.size()) != rig_.count()) {
-    throw std::invalid_argument("the schedule has " + std::to_string(schedule.paths.size()) +
-                                " grippers, the rig " + std::to_string(rig_.count()));
+    throw WrongInput("the schedule has " + std::to_string(schedule.paths.size()) + " grippers, the rig " +
+                     std::to_string(rig_.count()));
   }
   for (const auto& path : schedule.paths) {
     if (path.front().z != schedule.paths.front().front().z)
-      throw std::invalid_argument("joints must start at one height");
+      throw WrongInput("joints must start at one height");
   }
   if (rig_.driven == Driven::z) {
     if (!schedule.plane_paths.empty())
-      throw std::invalid_argument("the schedule has in-plane paths, the rig drives its joints in z only");
+      throw WrongInput("the schedule has in-plane paths, the rig drives its joints in z only");
     return;
   }
   if (schedule.plane_paths.size() != schedule.paths.size())
-    throw std::invalid_argument("the rig drives its joints in x, y and z: the schedule needs in-plane paths");
+    throw WrongInput("the rig drives its joints in x, y and z: the schedule needs in-plane paths");
   for (int g = 0; g < rig_.count(); ++g) {
     const Eigen::Vector2d apart = schedule.plane_paths[size_t(g)].front().xy - place_[size_t(g)];
     if (apart.norm() <= kStartSlack) continue;
-    throw std::invalid_argument("the in-plane path of gripper " + rig_.name(g) + " starts " +
-                                std::to_string(1e3 * apart.norm()) + " mm off its joint's place, (" +
-                                std::to_string(1e3 * place_[size_t(g)].x()) + ", " +
-                                std::to_string(1e3 * place_[size_t(g)].y()) + ") mm");
+    throw WrongInput("the in-plane path of gripper " + rig_.name(g) + " starts " +
+                     std::to_string(1e3 * apart.norm()) + " mm off its joint's place, (" +
+                     std::to_string(1e3 * place_[size_t(g)].x()) + ", " +
+                     std::to_string(1e3 * place_[size_t(g)].y()) + ") mm");
   }
 }
 

@@ -11,6 +11,7 @@
 #include "fem/run/stable_step.hpp"
 #include "fem/run/workspace.hpp"
 #include "fem/terms/contact.hpp"
+#include "mapping/error.hpp"
 
 namespace drapeplan {
 namespace {
@@ -39,10 +40,9 @@ void refuse_start_in_mold(const Model& model, const State& state) {
     const double stretch = std::hypot(1.0, slope);
     const double inside = 0.5 * thickness - (state.position.z[n] - jet.z) / stretch;
     if (inside > kSlack * thickness) {  // false where the mold is not defined
-      throw std::invalid_argument(
-          "simulate: the flat ply's underside starts " + std::to_string(1e3 * inside) +
-          " mm below the mold at x = " + std::to_string(state.position.x[n]) +
-          " m, y = " + std::to_string(state.position.y[n]) + " m: check its place and the start height");
+      throw WrongInput("simulate: the flat ply's underside starts " + std::to_string(1e3 * inside) +
+                       " mm below the mold at x = " + std::to_string(state.position.x[n]) + " m, y = " +
+                       std::to_string(state.position.y[n]) + " m: check its place and the start height");
     }
   }
 }
@@ -60,7 +60,7 @@ struct Clock {
       if (!grip.velocity.isZero()) motion_end = end;
     }
     if (!(end / model.dt() <= kMostSteps))
-      throw std::invalid_argument("simulate: the run would need more than 1e10 steps");
+      throw WrongInput("simulate: the run would need more than 1e10 steps");
   }
   [[nodiscard]] bool ended(const State& state) const { return state.time >= end * (1 - kTimeSlack); }
   /// Number of equal parts of the run that have passed.

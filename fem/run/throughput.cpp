@@ -10,6 +10,7 @@
 
 #include "fem/run/workspace.hpp"
 #include "fem/shell/kernel.hpp"
+#include "mapping/error.hpp"
 
 namespace drapeplan {
 namespace {
@@ -166,7 +167,7 @@ Throughput measure_throughput(const Model& model, const ThroughputRequest& reque
     part.schedule = request.schedule;
     part.duration = request.duration;
     RunResult result = simulate(model, part);
-    if (result.summary.status == RunStatus::diverged) throw std::runtime_error(result.summary.message);
+    if (result.summary.status == RunStatus::diverged) throw NotFinished(result.summary.message);
     return result;
   };
   const State from = run({.pause = request.start}).state;

@@ -1,10 +1,12 @@
 // bench: throughput of named scenes, whole time steps on one core.
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "fem/run/throughput.hpp"
 #include "planner/base/parallel.hpp"
@@ -178,34 +180,31 @@ double number(const json& object, const char* key) {
 
 /// What the machine can do, and the heads of the columns of `scene_line`.
 std::string heading(const json& machine) {
-  char line[300];
-  std::snprintf(
-      line, sizeof line,
-      "%s, %d lanes of double: %.1f GFLOP/s; streams %.0f, %.0f, %.0f GB/s (16 KiB, 512 KiB, 256 MiB)\n\n"
-      "%-26s %9s %9s %12s %8s %9s %9s\n",
-      machine["processor"].get<std::string>().c_str(), kLanes, number(machine, "fma_peak_gflops"),
-      number(machine, "stream_16KiB_GBps"), number(machine, "stream_512KiB_GBps"),
-      number(machine, "stream_256MiB_GBps"), "scene", "elements", "M/s", "M/s per GF/s", "spread", "of peak",
-      "GB/s");
-  return line;
+  return fmt::format(
+             "{}, {} lanes of double: {:.1f} GFLOP/s; streams {:.0f}, {:.0f}, {:.0f} GB/s (16 KiB, 512 KiB, "
+             "256 "
+             "MiB)\n\n",
+             machine["processor"].get<std::string>(), kLanes, number(machine, "fma_peak_gflops"),
+             number(machine, "stream_16KiB_GBps"), number(machine, "stream_512KiB_GBps"),
+             number(machine, "stream_256MiB_GBps")) +
+         fmt::format("{:<26} {:>9} {:>9} {:>12} {:>8} {:>9} {:>9}\n", "scene", "elements", "M/s",
+                     "M/s per GF/s", "spread", "of peak", "GB/s");
 }
 
 std::string scene_line(const json& scene) {
+  const auto name = scene["name"].get<std::string>();
   const double rate = number(scene, "element_updates_per_second");
-  char line[300];
   if (!scene.contains("share_of_peak")) {  // counted steps: the figure that means something is the state
-    return scene["name"].get<std::string>() + ": " + std::to_string(scene["steps"].get<std::int64_t>()) +
-           " steps, state hash " + scene["state_hash"].get<std::string>() + "\n";
+    return fmt::format("{}: {} steps, state hash {}\n", name, scene["steps"].get<std::int64_t>(),
+                       scene["state_hash"].get<std::string>());
   }
-  std::snprintf(line, sizeof line, "%-26s %9d %9.2f %12.3f %7.1f%% %8.1f%% %9.1f\n",
-                scene["name"].get<std::string>().c_str(), scene["elements"].get<int>(), 1e-6 * rate,
-                1e-6 * number(scene, "updates_per_second_per_gflops"), 1e2 * number(scene, "spread"),
-                1e2 * number(scene, "share_of_peak"), 1e-9 * rate * number(scene, "bytes_per_update"));
-  std::string text = line;
+  std::string text = fmt::format(
+      "{:<26} {:9} {:9.2f} {:12.3f} {:7.1f}% {:8.1f}% {:9.1f}\n", name, scene["elements"].get<int>(),
+      1e-6 * rate, 1e-6 * number(scene, "updates_per_second_per_gflops"), 1e2 * number(scene, "spread"),
+      1e2 * number(scene, "share_of_peak"), 1e-9 * rate * number(scene, "bytes_per_update"));
   if (scene.contains("two_side_by_side")) {
-    std::snprintf(line, sizeof line, "%-26s %9s %9.2f times the throughput of one\n", "  two on two cores",
-                  "", number(scene, "two_side_by_side"));
-    text += line;
+    text += fmt::format("{:<26} {:>9} {:9.2f} times the throughput of one\n", "  two on two cores", "",
+                        number(scene, "two_side_by_side"));
   }
   return text;
 }
@@ -216,33 +215,28 @@ std::string csv(const json& result) {
       "GFLOPps,"
       "spread,state_hash\n";
   for (const json& s : result["scenes"]) {
-    char line[400];
-    std::snprintf(line, sizeof line, "%s,%s,%g,%d,%d,%s,%d,%.2f,%.4f,%.3f,%s\n",
-                  result["machine"]["processor"].get<std::string>().c_str(),
-                  s["name"].get<std::string>().c_str(), s["mesh_size"].get<double>(),
-                  s["section_points"].get<int>(), int(s["rates"].get<bool>()),
-                  s["precision"].get<std::string>().c_str(), s["elements"].get<int>(),
-                  1e-6 * s["element_updates_per_second"].get<double>(),
-                  1e-6 * number(s, "updates_per_second_per_gflops"), s["spread"].get<double>(),
-                  s["state_hash"].get<std::string>().c_str());
-    text += line;
+    text += fmt::format("{},{},{:g},{},{},{},{},{:.2f},{:.4f},{:.3f},{}\n",
+                        result["machine"]["processor"].get<std::string>(), s["name"].get<std::string>(),
+                        s["mesh_size"].get<double>(), s["section_points"].get<int>(),
+                        int(s["rates"].get<bool>()), s["precision"].get<std::string>(),
+                        s["elements"].get<int>(), 1e-6 * s["element_updates_per_second"].get<double>(),
+                        1e-6 * number(s, "updates_per_second_per_gflops"), s["spread"].get<double>(),
+                        s["state_hash"].get<std::string>());
   }
   return text;
 }
 
-/// The scenes named by --scene, or all but the case itself. A name that none has: an error on stderr, and
-/// nothing.
-std::optional<std::vector<BenchScene>> chosen_scenes(const std::vector<std::string>& names) {
+/// The scenes named by --scene, or all but the case itself. @throws WrongInput for a name that none has.
+std::vector<BenchScene> chosen_scenes(const std::vector<std::string>& names) {
   std::vector<BenchScene> all = bench_scenes();
   if (names.empty()) return all;
   all.push_back({kCaseScene, Kind::as_it_is});
+  std::vector<std::string> known;
+  for (const BenchScene& scene : all) known.push_back(scene.name);
   for (const std::string& name : names) {
-    const auto has_name = [&name](const BenchScene& scene) { return scene.name == name; };
-    if (std::any_of(all.begin(), all.end(), has_name)) continue;
-    std::cerr << "bench: --scene: there is no scene \"" << name << "\"; there are";
-    for (const BenchScene& scene : all) std::cerr << ' ' << scene.name;
-    std::cerr << '\n';
-    return std::nullopt;
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw WrongInput(
+        fmt::format("--scene: there is no scene \"{}\"; there are {}", name, fmt::join(known, " ")));
   }
   std::vector<BenchScene> chosen;
   for (const BenchScene& scene : all) {
@@ -259,33 +253,32 @@ Schedule uniform_schedule(const Case& definition) {
 }
 
 int bench(const BenchOptions& options) {
-  const std::optional<std::vector<BenchScene>> scenes = chosen_scenes(options.only);
-  if (!scenes) return kInputWrong;
-  const bool as_it_is = scenes->size() == 1 && scenes->front().kind == Kind::as_it_is;
+  const std::vector<BenchScene> scenes = chosen_scenes(options.only);
+  const bool as_it_is = scenes.size() == 1 && scenes.front().kind == Kind::as_it_is;
   using Sections = std::vector<std::string>;
-  const std::optional<Case> definition =
+  const Case definition =
       load_case(options.file, options.common,
                 as_it_is ? Sections{"material"} : Sections{"mapping", "grippers", "material", "mold"});
-  if (!definition) return kInputWrong;
-  const Schedule schedule = uniform_schedule(*definition);
+  const Schedule schedule = uniform_schedule(definition);
+  try_folder(options.common.out);
   json result = {{"machine", machine_json(options)}, {"scenes", json::array()}};
   std::string text = options.steps > 0 ? "" : heading(result["machine"]);
   bool same = true;
-  for (const BenchScene& scene : *scenes) {
+  for (const BenchScene& scene : scenes) {
     if (!options.common.quiet) std::cerr << scene.name << " ...\n";
-    json entry = measure_scene(*definition, scene, schedule, options);
+    json entry = measure_scene(definition, scene, schedule, options);
     same = same && entry["same_hash_in_all_repeats"].get<bool>();
     text += scene_line(entry);
     result["scenes"].push_back(std::move(entry));
   }
-  const int code = deliver(result, text, options.common, &*definition);
-  if (!options.common.out.empty())
-    write_text(std::filesystem::path(options.common.out) / "bench.csv", csv(result));
-  if (!same) {
-    std::cerr << "bench: repeats of a scene ended in different states\n";
-    return kBug;
+  if (!options.common.out.empty()) {
+    const std::filesystem::path folder(options.common.out);
+    create_directories(folder);
+    write_text(folder / "bench.csv", csv(result));
   }
-  return code;
+  deliver(result, text, options.common, &definition);
+  if (!same) throw std::logic_error("repeats of a scene ended in different states");
+  return kDone;
 }
 
 }  // namespace

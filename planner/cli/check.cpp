@@ -1,4 +1,6 @@
 // check, schema, explain: everything about case files that needs no computation.
+#include <fmt/format.h>
+
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -35,9 +37,10 @@ int check(const CheckOptions& options) {
   CommonOptions delivery = options.common;
   if (!all.empty()) delivery.out.clear();  // wrong input: nothing is written
   const bool resolvable = all.empty() && options.files.size() == 1;
-  const int code = deliver({{"cases", std::move(cases)}}, text, delivery, resolvable ? &single : nullptr);
-  print_errors(all);
-  return all.empty() ? code : kInputWrong;
+  if (!all.empty()) std::cerr << errors_text(all) << '\n';
+  try_folder(delivery.out);
+  deliver({{"cases", std::move(cases)}}, text, delivery, resolvable ? &single : nullptr);
+  return all.empty() ? kDone : kInputWrong;
 }
 
 struct SchemaOptions {
@@ -46,7 +49,9 @@ struct SchemaOptions {
 
 int schema(const SchemaOptions& options) {
   const json document = case_schema();
-  return deliver(document, document.dump(2) + '\n', options.common);
+  try_folder(options.common.out);
+  deliver(document, document.dump(2) + '\n', options.common);
+  return kDone;
 }
 
 struct ExplainOptions {
@@ -57,11 +62,13 @@ struct ExplainOptions {
 int explain(const ExplainOptions& options) {
   std::string nearest;
   const std::string text = explain_field(options.path, nearest);
-  if (!text.empty()) return deliver({{"path", options.path}, {"text", text}}, text, options.common);
-  std::cerr << "explain: there is no field \"" << options.path << '"';
-  if (!nearest.empty()) std::cerr << "; did you mean \"" << nearest << "\"?";
-  std::cerr << '\n';
-  return kInputWrong;
+  if (text.empty()) {
+    throw WrongInput(fmt::format("there is no field \"{}\"{}", options.path,
+                                 nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
+  }
+  try_folder(options.common.out);
+  deliver({{"path", options.path}, {"text", text}}, text, options.common);
+  return kDone;
 }
 
 }  // namespace

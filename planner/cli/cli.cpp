@@ -1,9 +1,16 @@
 #include "planner/cli/cli.hpp"
 
-#include <cstdio>
-#include <fstream>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "planner/base/text.hpp"
+#include "planner/cli/streams.hpp"
 
 namespace drapeplan {
 namespace {
@@ -17,12 +24,21 @@ bool has_section(const Case& definition, const std::string& name) {
   return definition.material.thickness > 0;
 }
 
-bool write_json(const std::filesystem::path& file, const nlohmann::json& value) {
-  std::ofstream stream(file);
-  stream << value.dump(kIndent) << '\n';
-  stream.close();
-  if (!stream) std::cerr << file.string() << ": cannot be written\n";
-  return bool(stream);
+[[noreturn]] void refuse_folder(const std::filesystem::path& folder, const std::string& reason) {
+  throw WrongInput(fmt::format("{}: results cannot be written there: {}", folder.string(), reason));
+}
+
+/// Whether a file can be made in it; `access` would say so of folders of /proc, too.
+bool takes_files(const std::filesystem::path& folder, std::string& reason) {
+  std::string trial = (folder / "trial.XXXXXX").string();
+  const int file = mkstemp(trial.data());
+  if (file < 0) {
+    reason = std::generic_category().message(errno);
+    return false;
+  }
+  close(file);
+  unlink(trial.c_str());
+  return true;
 }
 
 }  // namespace
@@ -44,32 +60,57 @@ void add_common_options(CLI::App& verb, CommonOptions& options) {
   verb.add_flag("--quiet", options.quiet, "only errors on stderr, and nothing on stdout but --json");
 }
 
-void print_errors(const std::vector<InputError>& errors) {
-  for (const InputError& error : errors) std::cerr << error.text() << '\n';
-  if (errors.size() > 1) std::cerr << errors.size() << " errors\n";
+int run_guarded(const std::function<int()>& work, const std::string& subject) {
+  try {
+    return work();
+  } catch (...) {
+    const Failure failure = failure_of(std::current_exception());
+    print_failure(failure, subject);
+    return failure.code;
+  }
 }
 
-std::optional<Case> load_case(const std::string& file, const CommonOptions& options,
-                              const std::vector<std::string>& needs) {
+Case load_case(const std::string& file, const CommonOptions& options, const std::vector<std::string>& needs,
+               std::vector<InputError>& errors) {
   CaseReading reading = read_case(file, options.overrides);
   if (reading.errors.empty()) {
     for (const std::string& need : needs) {
       if (has_section(reading.definition, need)) continue;
       reading.errors.push_back(
-          {file, 0, "", "this verb needs the section \"" + need + "\", which is absent"});
+          {file, 0, "", fmt::format("this verb needs the section \"{}\", which is absent", need)});
     }
   }
-  if (!reading.errors.empty()) {
-    print_errors(reading.errors);
-    return std::nullopt;
-  }
-  if (!options.out.empty() && std::filesystem::exists(options.out) &&
-      !std::filesystem::is_directory(options.out)) {
-    std::cerr << options.out << ": --out must be a folder\n";
-    return std::nullopt;
-  }
+  errors.insert(errors.end(), reading.errors.begin(), reading.errors.end());
   if (options.seed) reading.definition.optimise.seed = *options.seed;
   return std::move(reading.definition);
+}
+
+Case load_case(const std::string& file, const CommonOptions& options, const std::vector<std::string>& needs) {
+  std::vector<InputError> errors;
+  Case definition = load_case(file, options, needs, errors);
+  if (!errors.empty()) throw InputErrors(errors);
+  return definition;
+}
+
+void try_folder(const std::filesystem::path& folder) {
+  if (folder.empty()) return;
+  std::error_code error;
+  std::vector<std::filesystem::path> absent;  // the innermost first
+  for (std::filesystem::path at = std::filesystem::absolute(folder, error); !error; at = at.parent_path()) {
+    if (exists(status(at, error))) break;
+    if (error && error != std::errc::no_such_file_or_directory) refuse_folder(folder, error.message());
+    error.clear();
+    if (at == at.parent_path()) break;
+    absent.push_back(at);
+  }
+  create_directories(folder, error);
+  std::string reason = error.message();
+  const bool usable = !error && takes_files(folder, reason);
+  for (const std::filesystem::path& made : absent) {
+    std::error_code ignored;
+    remove(made, ignored);
+  }
+  if (!usable) refuse_folder(folder, reason);
 }
 
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options) {
@@ -77,26 +118,17 @@ void print_warnings(const std::vector<std::string>& warnings, const CommonOption
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
 }
 
-int deliver(const nlohmann::json& result, const std::string& text, const CommonOptions& options,
-            const Case* resolved) {
-  if (options.json) {
-    std::cout << result.dump(kIndent) << '\n';
-  } else if (!options.quiet) {
-    std::cout << text;
+void deliver(const nlohmann::json& result, const std::string& text, const CommonOptions& options,
+             const Case* resolved) {
+  const std::string document = result.dump(kIndent) + "\n";
+  if (!options.out.empty()) {
+    const std::filesystem::path folder(options.out);
+    create_directories(folder);
+    write_text(folder / "result.json", document);
+    if (resolved != nullptr)
+      write_text(folder / "resolved.json", resolved_case(*resolved).dump(kIndent) + "\n");
   }
-  std::cout.flush();
-  if (options.out.empty()) return kDone;
-  const std::filesystem::path folder(options.out);
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    std::cerr << options.out << ": cannot be made: " << error.message() << '\n';
-    return kNotFinished;
-  }
-  bool written = write_json(folder / "result.json", result);
-  if (resolved != nullptr)
-    written = write_json(folder / "resolved.json", resolved_case(*resolved)) && written;
-  return written ? kDone : kNotFinished;
+  if (options.json || !options.quiet) print(options.json ? document : text, !options.out.empty());
 }
 
 }  // namespace drapeplan

@@ -12,10 +12,9 @@
 
 #include "planner/case/case.hpp"
 #include "planner/case/file.hpp"
+#include "planner/cli/failure.hpp"
 
 namespace drapeplan {
-
-enum ExitCode : int { kDone = 0, kInputWrong = 2, kNotFinished = 3, kBug = 4 };
 
 /// Options of every verb.
 struct CommonOptions {
@@ -30,7 +29,7 @@ struct CommonOptions {
 /// What the chosen verb does; returns the exit code. Set while the command line is parsed, called afterwards.
 using Action = std::function<int()>;
 
-/// One function per verb, in cli_<verb>.cpp. `action` must outlive the parsing.
+/// One function per verb, in <verb>.cpp. `action` must outlive the parsing.
 void add_check(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);
 void add_explain(CLI::App& program, Action& action);
@@ -44,9 +43,14 @@ void add_study(CLI::App& program, Action& action);
 
 void add_common_options(CLI::App& verb, CommonOptions& options);
 
-/// Adds one verb. `Options` has the shared ones in its member `common`.
+/// Calls `work`, and turns what it throws into a message and an exit code.
+/// @param subject  what the work is about, for the message: a case file or the verb.
+int run_guarded(const std::function<int()>& work, const std::string& subject);
+
+/// Adds one verb. `Options` has the shared ones in its member `common`, and a verb of one case has its file
+/// in `file`.
 /// @param describe  describe(CLI::App&, Options&) adds the verb's own arguments and options.
-/// @param run       run(const Options&) does the work and returns the exit code.
+/// @param run       run(const Options&) does the work and returns the exit code, or throws.
 template <class Options, class Describe, class Run>
 void add_verb(CLI::App& program, Action& action, const char* name, const char* text, const Describe& describe,
               const Run& run) {
@@ -54,25 +58,38 @@ void add_verb(CLI::App& program, Action& action, const char* name, const char* t
   const auto options = std::make_shared<Options>();  // lives as long as CLI11 keeps the callback
   add_common_options(*verb, options->common);
   describe(*verb, *options);
-  verb->callback([&action, options, run] { action = [options, run] { return run(*options); }; });
+  verb->callback([&action, options, run, name] {
+    action = [options, run, name] {
+      std::string subject = name;
+      if constexpr (requires { options->file; }) subject = options->file;
+      return run_guarded([&] { return run(*options); }, subject);
+    };
+  });
 }
 
-/// The case in `file` with the overrides (and the seed) of the command line. If something is wrong with it,
-/// all errors go to stderr and nothing is returned.
+/// The case in `file` with the overrides (and the seed) of the command line.
 /// @param needs  sections that the verb cannot do without: "mapping", "grippers", "material", "mold".
-std::optional<Case> load_case(const std::string& file, const CommonOptions& options,
-                              const std::vector<std::string>& needs = {});
+/// @throws InputErrors with all that is wrong with it.
+Case load_case(const std::string& file, const CommonOptions& options,
+               const std::vector<std::string>& needs = {});
 
-/// Prints errors to stderr, one per line, and how many there are.
-void print_errors(const std::vector<InputError>& errors);
+/// As `load_case`, but its errors are added to a list: for verbs of many cases.
+Case load_case(const std::string& file, const CommonOptions& options, const std::vector<std::string>& needs,
+               std::vector<InputError>& errors);
+
+/// Tries that a folder of this name can be made and written into, before the work begins. Nothing is left of
+/// the trial. An empty name is no folder.
+/// @throws WrongInput with the place and the system's reason.
+void try_folder(const std::filesystem::path& folder);
 
 /// Warnings of the mapping on stderr, unless --quiet.
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options);
 
-/// The result as text for people, or as JSON with --json; and result.json (with resolved.json if there is a
-/// case) under --out. @return kDone, or kNotFinished if a file could not be written (the reason goes to
-/// stderr).
-int deliver(const nlohmann::json& result, const std::string& text, const CommonOptions& options,
-            const Case* resolved = nullptr);
+/// Writes result.json (and resolved.json if there is a case) under --out; then the result goes to stdout as
+/// text for people, or as JSON with --json. To be called after all other files were written: a reader of
+/// stdout may be gone.
+/// @throws NotFinished with the reason if something cannot be written.
+void deliver(const nlohmann::json& result, const std::string& text, const CommonOptions& options,
+             const Case* resolved = nullptr);
 
 }  // namespace drapeplan

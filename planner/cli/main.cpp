@@ -1,12 +1,12 @@
-// The drapeplan program: one verb per call; every verb lives in its own cli_<verb>.cpp.
+// The drapeplan program: one verb per call; every verb lives in its own <verb>.cpp.
 #include <algorithm>
-#include <exception>
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include "planner/base/spelling.hpp"
 #include "planner/cli/cli.hpp"
+#include "planner/cli/streams.hpp"
 
 namespace drapeplan {
 namespace {
@@ -55,13 +55,12 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace drapeplan;
-  try {
-    const int code = run(argc, argv);
-    if (std::cout.flush()) return code;
-    std::cerr << "drapeplan: stdout: cannot be written\n";
-    return code == kDone ? int(kNotFinished) : code;
-  } catch (const std::exception& error) {
-    std::cerr << "drapeplan: a bug: " << error.what() << '\n';
-    return kBug;
-  }
+  prepare_streams();
+  return run_guarded(
+      [argc, argv] {
+        const int code = run(argc, argv);
+        if (!std::cout.flush()) throw NotFinished("stdout: cannot be written");  // of --help
+        return code;
+      },
+      "");
 }

@@ -1,8 +1,7 @@
 // map: kinematic energy mapping only.
-#include <cstdio>
-#include <iostream>
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "planner/cli/cli.hpp"
 #include "planner/drape/map_result.hpp"
@@ -42,43 +41,31 @@ json result_json(const Case& definition, const MapResult& map) {
 }
 
 std::string millimetres(const std::string& label, const Eigen::Vector3d& p) {
-  char line[120];
-  std::snprintf(line, sizeof line, "  %-12s %9.2f %9.2f %9.2f\n", label.c_str(), 1e3 * p.x(), 1e3 * p.y(),
-                1e3 * p.z());
-  return line;
+  return fmt::format("  {:<12} {:9.2f} {:9.2f} {:9.2f}\n", label, 1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z());
 }
 
 std::string result_text(const Case& definition, const MapResult& map) {
-  char line[160];
-  std::snprintf(line, sizeof line,
-                "%s: shear angle largest %.2f deg, mean %.2f deg; net of %zu x %zu cells\n\n",
-                definition.name.substr(0, 60).c_str(), map.max_shear_deg, map.mean_shear_deg,
-                map.net.u.size() - 1, map.net.v.size() - 1);
-  std::string text = line;
+  std::string text = fmt::format(
+      "{}: shear angle largest {:.2f} deg, mean {:.2f} deg; net of {} x {} cells\n\n", definition.name,
+      map.max_shear_deg, map.mean_shear_deg, map.net.u.size() - 1, map.net.v.size() - 1);
   text += "  place             x [mm]    y [mm]    z [mm]\n";
   const char* corners[] = {"corner (-,-)", "corner (+,-)", "corner (+,+)", "corner (-,+)"};
   for (size_t k = 0; k < map.corners.size(); ++k) text += millimetres(corners[k], map.corners[k]);
   for (size_t k = 0; k < map.targets.size(); ++k) {
     const int columns = definition.grippers->columns;
-    text += millimetres(
-        "gripper " + std::to_string(1 + int(k) % columns) + "," + std::to_string(1 + int(k) / columns),
-        map.targets[k]);
+    text +=
+        millimetres(fmt::format("gripper {},{}", 1 + int(k) % columns, 1 + int(k) / columns), map.targets[k]);
   }
   return text;
 }
 
 int map(const MapOptions& options) {
-  const std::optional<Case> definition = load_case(options.file, options.common, {"mapping"});
-  if (!definition) return kInputWrong;
-  try {
-    const MapResult result = map_case(*definition);
-    print_warnings(map_warnings(*definition, result), options.common);
-    return deliver(result_json(*definition, result), result_text(*definition, result), options.common,
-                   &*definition);
-  } catch (const std::domain_error& error) {
-    std::cerr << options.file << ": the ply cannot be mapped: " << error.what() << '\n';
-    return kNotFinished;
-  }
+  const Case definition = load_case(options.file, options.common, {"mapping"});
+  try_folder(options.common.out);
+  const MapResult result = map_case(definition);
+  print_warnings(map_warnings(definition, result), options.common);
+  deliver(result_json(definition, result), result_text(definition, result), options.common, &definition);
+  return kDone;
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 // plan: the main job, for one or many case files.
+#include <fmt/format.h>
+
 #include <chrono>
-#include <cstdio>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "planner/base/text.hpp"
 #include "planner/cli/cli.hpp"
+#include "planner/cli/streams.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/report/run_files.hpp"
 #include "planner/search/plan.hpp"
@@ -31,11 +33,11 @@ class ProgressLine {
     if (progress.stage == stage_ && !last && now - shown_ < std::chrono::seconds(kSeconds)) return;
     shown_ = now;
     stage_ = progress.stage;
-    std::fprintf(stderr, "  %4d/%d  %-8s best %8.3f", progress.done, progress.planned, progress.stage.c_str(),
-                 progress.best);
+    std::cerr << fmt::format("  {:4}/{}  {:<8} best {:8.3f}", progress.done, progress.planned, progress.stage,
+                             progress.best);
     if (std::isfinite(progress.seconds_left))
-      std::fprintf(stderr, "   about %.0f s left", progress.seconds_left);
-    std::fputc('\n', stderr);
+      std::cerr << fmt::format("   about {:.0f} s left", progress.seconds_left);
+    std::cerr << '\n';
   }
 
  private:
@@ -95,23 +97,37 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
 
 struct PlannedCase {
   json result;
+  std::string text;    ///< for people
   bool valid = false;  ///< at least the best drape could be simulated
 };
+
+/// What was found before the search begins.
+void print_start(const DrapeProblem& problem) {
+  std::cerr << fmt::format("{}: mapped, shear at most {:g} deg\n  terms: {}\n  reach: {}\n",
+                           problem.definition().name, problem.mapping().max_shear_deg,
+                           terms_line(problem.model(kReport)),
+                           explain_reach(problem.reach_problem(), problem.reach()));
+}
+
+std::string result_text(const DrapeProblem& problem, const PlanResult& result,
+                        const std::filesystem::path& folder) {
+  std::string text =
+      fmt::format("\n{}\n{}\n{} evaluations ({} failed) in {} s", comparison_table(problem, result),
+                  result.search.message, result.search.evaluations, result.search.failed_evaluations,
+                  std::llround(result.wall_seconds));
+  if (result.best.score.valid) text += fmt::format("; report: {}", (folder / "report.html").string());
+  return text + "\n";
+}
 
 /// Plans one case into its folder; throws what went wrong.
 PlannedCase plan_case(Case definition, const PlanVerbOptions& options, const std::filesystem::path& folder) {
   const bool talk = !options.common.quiet;
-  const std::string name = definition.name;
   const DrapeProblem problem(std::move(definition));
   for (const std::string& fidelity : plan_fidelities(problem.definition()))
     static_cast<void>(problem.model(fidelity));  // what cannot be built is found before anything is written
-  if (talk) {
-    std::cerr << name << ": mapped, shear at most " << problem.mapping().max_shear_deg
-              << " deg\n  terms: " << terms_line(problem.model(kReport))
-              << "\n  reach: " << explain_reach(problem.reach_problem(), problem.reach()) << '\n';
-  }
+  if (talk) print_start(problem);
   print_warnings(map_warnings(problem.definition(), problem.mapping()), options.common);
-  std::filesystem::create_directories(folder);
+  create_directories(folder);
   write_text(folder / "resolved.json", resolved_case(problem.definition()).dump(2) + "\n");
   ProgressLine line;
   const PlanResult result =
@@ -120,15 +136,9 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, const std
       });
   if (result.best.score.valid)
     write_plan(folder, problem, result);  // no schedule for a robot from failed runs
-  const json out = plan_json(problem, result);
+  json out = plan_json(problem, result);
   write_text(folder / "result.json", out.dump(2) + "\n");
-  if (!options.common.json && talk) {
-    std::cout << '\n' << comparison_table(problem, result) << '\n' << result.search.message << '\n';
-    std::cout << result.search.evaluations << " evaluations (" << result.search.failed_evaluations
-              << " failed) in " << std::llround(result.wall_seconds)
-              << " s; report: " << (folder / "report.html").string() << std::endl;
-  }
-  return {out, result.best.score.valid};
+  return {std::move(out), result_text(problem, result, folder), result.best.score.valid};
 }
 
 /// A run directory per case: --out itself for a single case, else a folder below it by the case file's name.
@@ -140,64 +150,61 @@ std::vector<std::filesystem::path> run_folders(const PlanVerbOptions& options) {
   return folders;
 }
 
-/// Two cases in one folder would overwrite each other: prints an error for each such pair.
-bool share_a_folder(const std::vector<std::string>& files,
-                    const std::vector<std::filesystem::path>& folders) {
+/// Two cases in one folder would overwrite each other: adds an error for each such pair.
+void refuse_shared_folders(const std::vector<std::string>& files,
+                           const std::vector<std::filesystem::path>& folders,
+                           std::vector<InputError>& errors) {
   std::map<std::filesystem::path, std::string> owner;
-  bool shared = false;
   for (size_t k = 0; k < files.size(); ++k) {
     const auto [found, fresh] = owner.try_emplace(folders[k], files[k]);
     if (fresh) continue;
-    std::cerr << files[k] << ": would be planned in the folder of " << found->second << ", "
-              << folders[k].string() << "; plan them in two calls with different --out, or rename one\n";
-    shared = true;
+    errors.push_back({files[k], 0, "",
+                      fmt::format("would be planned in the folder of {}, {}; plan them in two calls with "
+                                  "different --out, or rename one",
+                                  found->second, folders[k].string())});
   }
-  return shared;
 }
 
 /// Plans one case and adds its result to the list: of a case that could not be planned, its name and why.
+/// A bug is thrown on.
 ExitCode plan_and_add(Case definition, const std::string& file, const PlanVerbOptions& options,
                       const std::filesystem::path& folder, json& results) {
   const std::string name = definition.name;
-  const auto failed = [&](const std::string& reason) {
-    std::cerr << file << ": " << reason << '\n';
-    results.push_back({{"case", name}, {"status", "not finished"}, {"reason", reason}});
-  };
   try {
     PlannedCase planned = plan_case(std::move(definition), options, folder);
     results.push_back(std::move(planned.result));
+    if (!options.common.json && !options.common.quiet) print(planned.text, true);
     if (!planned.valid) std::cerr << file << ": no drape could be simulated to its end\n";
     return planned.valid ? kDone : kNotFinished;
-  } catch (const std::invalid_argument& error) {
-    failed(error.what());
-    return kInputWrong;
-  } catch (const std::exception& error) {
-    const bool begun = std::filesystem::exists(folder);
-    failed("not finished: " + std::string(error.what()) +
-           (begun ? "; what was done is kept in " + folder.string() : ""));
-    return kNotFinished;
+  } catch (...) {
+    Failure failure = failure_of(std::current_exception());
+    if (failure.code == kBug) throw;
+    std::error_code error;
+    if (failure.code == kNotFinished && std::filesystem::exists(folder, error))
+      failure.reason += "; what was done is kept in " + folder.string();
+    print_failure(failure, file);
+    results.push_back({{"case", name}, {"status", "not finished"}, {"reason", failure.reason}});
+    return failure.code;
   }
 }
 
 int plan_all(const PlanVerbOptions& options) {
   std::vector<Case> cases;
+  std::vector<InputError> errors;
   const std::vector<std::filesystem::path> folders = run_folders(options);
-  bool wrong = share_a_folder(options.files, folders);
-  for (const std::string& file : options.files) {
-    std::optional<Case> definition = load_case(file, options.common, {"grippers", "material"});
-    wrong = wrong || !definition;
-    if (definition) cases.push_back(std::move(*definition));
-  }
-  if (wrong) return kInputWrong;
+  refuse_shared_folders(options.files, folders, errors);
+  for (const std::string& file : options.files)
+    cases.push_back(load_case(file, options.common, {"grippers", "material"}, errors));
+  if (!errors.empty()) throw InputErrors(errors);
+  for (const std::filesystem::path& folder : folders) try_folder(folder);
   json results = json::array();
   int code = kDone;
   for (size_t k = 0; k < cases.size(); ++k) {
     const ExitCode one = plan_and_add(std::move(cases[k]), options.files[k], options, folders[k], results);
     if (code == kDone || one == kInputWrong) code = one;
   }
-  if (options.common.json) {
-    std::cout << (results.size() == 1 ? results[0] : json{{"cases", results}}).dump(2) << '\n';
-  }
+  if (options.common.json)
+    print((results.size() == 1 ? results[0] : json{{"cases", results}}).dump(2) + "\n", true);
   return code;
 }
 

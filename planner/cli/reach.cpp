@@ -1,8 +1,7 @@
 // reach: how close the rig can come to its targets at all.
-#include <cstdio>
-#include <iostream>
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "planner/cli/cli.hpp"
 #include "planner/drape/map_result.hpp"
@@ -33,45 +32,31 @@ json result_json(const ReachProblem& problem, const ReachResult& reach) {
 
 /// The distances as a map of the grid, seen from above: j upwards, i to the right.
 std::string result_text(const ReachProblem& problem, const ReachResult& reach) {
-  char cell[80];
-  std::snprintf(cell, sizeof cell,
-                "smallest possible distance to the targets: r.m.s. %.2f mm, largest %.2f mm\n\n",
-                1e3 * reach.floor_rms, 1e3 * reach.floor_max);
-  std::string text = cell;
+  std::string text =
+      fmt::format("smallest possible distance to the targets: r.m.s. {:.2f} mm, largest {:.2f} mm\n\n",
+                  1e3 * reach.floor_rms, 1e3 * reach.floor_max);
   text += "  distance [mm] of gripper [i, j] at the r.m.s. optimum\n";
   for (int j = problem.rig.rows - 1; j >= 0; --j) {
-    std::snprintf(cell, sizeof cell, "  j = %-3d", j + 1);
-    text += cell;
-    for (int i = 0; i < problem.rig.columns; ++i) {
-      std::snprintf(cell, sizeof cell, "%8.2f", 1e3 * reach.per_gripper[size_t(j * problem.rig.columns + i)]);
-      text += cell;
-    }
+    text += fmt::format("  j = {:<3}", j + 1);
+    for (int i = 0; i < problem.rig.columns; ++i)
+      text += fmt::format("{:8.2f}", 1e3 * reach.per_gripper[size_t(j * problem.rig.columns + i)]);
     text += '\n';
   }
   text += "  i =    ";
-  for (int i = 0; i < problem.rig.columns; ++i) {
-    std::snprintf(cell, sizeof cell, "%8d", i + 1);
-    text += cell;
-  }
+  for (int i = 0; i < problem.rig.columns; ++i) text += fmt::format("{:8}", i + 1);
   return text + "\n\n" + explain_reach(problem, reach) + "\n";
 }
 
 int reach(const ReachOptions& options) {
-  const std::optional<Case> definition = load_case(options.file, options.common, {"grippers"});
-  if (!definition) return kInputWrong;
-  try {
-    const MapResult map = map_case(*definition);
-    print_warnings(map_warnings(*definition, map), options.common);
-    const ReachProblem problem = reach_problem_of(*definition, map.targets);
-    const ReachResult result = solve_reach(problem, kRandomStarts, definition->optimise.seed);
-    const int code =
-        deliver(result_json(problem, result), result_text(problem, result), options.common, &*definition);
-    if (!result.converged) std::cerr << options.file << ": not converged: " << result.status << '\n';
-    return result.converged ? code : kNotFinished;
-  } catch (const std::domain_error& error) {
-    std::cerr << options.file << ": the ply cannot be mapped: " << error.what() << '\n';
-    return kNotFinished;
-  }
+  const Case definition = load_case(options.file, options.common, {"grippers"});
+  try_folder(options.common.out);
+  const MapResult map = map_case(definition);
+  print_warnings(map_warnings(definition, map), options.common);
+  const ReachProblem problem = reach_problem_of(definition, map.targets);
+  const ReachResult result = solve_reach(problem, kRandomStarts, definition.optimise.seed);
+  deliver(result_json(problem, result), result_text(problem, result), options.common, &definition);
+  if (!result.converged) throw NotFinished("not converged: " + result.status);
+  return kDone;
 }
 
 }  // namespace

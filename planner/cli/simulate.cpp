@@ -1,5 +1,6 @@
 // simulate: one FE run, with or without grippers.
-#include <cstdio>
+#include <fmt/format.h>
+
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -36,26 +37,43 @@ struct PartOfRun {
   double pause = 0;
 };
 
-/// Reads what --restart and --pause say. @throws std::invalid_argument with the reason.
+/// Reads what --restart and --pause say. @throws WrongInput with the reason.
 PartOfRun part_of_run(const SimulateOptions& options, const Model& model) {
   PartOfRun part;
   if (!options.pause.empty()) {
     std::string fault;
     const std::optional<double> time = parse_quantity(options.pause, Dimension::time, fault);
-    if (!time || !(*time > 0)) throw std::invalid_argument("--pause: " + (time ? "must be > 0" : fault));
-    if (options.save.empty()) throw std::invalid_argument("--pause: needs --save FILE, or the run is lost");
+    if (!time || !(*time > 0)) throw WrongInput("--pause: " + (time ? "must be > 0" : fault));
+    if (options.save.empty()) throw WrongInput("--pause: needs --save FILE, or the run is lost");
     part.pause = *time;
   }
   if (options.restart.empty()) return part;
   StateReading reading = load_state(options.restart, model);
-  if (!reading.value) throw std::invalid_argument("--restart: " + reading.error);
+  if (!reading.value) throw WrongInput("--restart: " + reading.error);
   part.from = std::move(reading.value);
   return part;
 }
 
-/// Saves the state where --save says, and adds the stable step at it: as estimated, and the true one.
-void finish_run(const SimulateOptions& options, const Model& model, const RunResult& run, json& result) {
-  if (!options.save.empty()) save_state(options.save, model, run.state);
+/// Saves the state where --save says.
+void save(const SimulateOptions& options, const Model& model, const State& state) {
+  if (!options.save.empty()) save_state(options.save, model, state);
+}
+
+/// Does both, also if the first fails, and then throws what the first threw: one place that cannot be written
+/// does not cost what belongs to the other.
+void keep_all(const std::function<void()>& first, const std::function<void()>& second) {
+  std::exception_ptr thrown;
+  try {
+    first();
+  } catch (...) {
+    thrown = std::current_exception();
+  }
+  second();
+  if (thrown) std::rethrow_exception(thrown);
+}
+
+/// The stable step at the end: as estimated, and the true one.
+void add_stable_step(const Model& model, const RunResult& run, json& result) {
   if (run.summary.status == RunStatus::diverged) return;
   StepScratch scratch(model);
   State state = run.state;
@@ -65,23 +83,19 @@ void finish_run(const SimulateOptions& options, const Model& model, const RunRes
 }
 
 std::string summary_text(const RunSummary& summary, int nodes) {
-  char text[300];
-  std::snprintf(text, sizeof text,
-                "%s: %lld steps of %.3g us on %d nodes in %.1f s (%.1f million element updates per "
-                "second)\nenergy [J]:",
-                summary.message.c_str(), static_cast<long long>(summary.steps), 1e6 * summary.dt, nodes,
-                summary.wall_seconds, 1e-6 * summary.element_updates_per_second);
-  std::string lines = text;
+  std::string text = fmt::format(
+      "{}: {} steps of {:.3g} us on {} nodes in {:.1f} s ({:.1f} million element updates per second)\n"
+      "energy [J]:",
+      summary.message, summary.steps, 1e6 * summary.dt, nodes, summary.wall_seconds,
+      1e-6 * summary.element_updates_per_second);
   for_each_energy(summary, [&](const std::string& key, double value, bool SummaryParts::*part) {
     if (key == "largest" || key == "balance_error" || (part != nullptr && !(summary.parts.*part))) return;
-    std::snprintf(text, sizeof text, " %s %.4g,", key.c_str(), value);
-    lines += text;
+    text += fmt::format(" {} {:.4g},", key, value);
   });
-  std::snprintf(text, sizeof text,
-                " hourglass at most %.2f %% of internal; books close to %.1e of the largest\nstate hash %s\n",
-                1e2 * summary.largest_hourglass_share, summary.energy.balance_error,
-                hex(summary.state_hash).c_str());
-  return lines + text;
+  return text +
+         fmt::format(
+             " hourglass at most {:.2f} % of internal; books close to {:.1e} of the largest\nstate hash {}\n",
+             1e2 * summary.largest_hourglass_share, summary.energy.balance_error, hex(summary.state_hash));
 }
 
 void print_terms(const Model& model, const CommonOptions& options) {
@@ -109,10 +123,25 @@ json probes_json(const Case& definition, const Model& model, const Snapshot& sta
   return probes;
 }
 
+/// What `probes_json` found, for people.
+std::string probes_text(const json& probes) {
+  std::string text;
+  const auto line = [&text](const std::string& what, const json& v, double scale, const char* unit) {
+    text += fmt::format("{} ({:.3f}, {:.3f}, {:.3f}) {}\n", what, scale * v[0].get<double>(),
+                        scale * v[1].get<double>(), scale * v[2].get<double>(), unit);
+  };
+  for (const auto& [name, probe] : probes.items()) {
+    line(name + " moved by", probe["displacement"], 1e3, "mm");
+    if (probe.contains("force")) line(name + " pulls with", probe["force"], 1, "N");
+  }
+  return text;
+}
+
 /// A case without grippers: strips and specimens.
 int simulate_free(const Case& definition, const SimulateOptions& options) {
-  const Model model(scene_of(definition, definition.fidelities.at(options.fidelity)));
+  const Model model = model_of(definition, definition.fidelities.at(options.fidelity));
   const PartOfRun part = part_of_run(options, model);
+  try_folder(options.common.out);
   print_terms(model, options.common);
   std::vector<Snapshot> frames;
   RunRequest request;
@@ -123,136 +152,127 @@ int simulate_free(const Case& definition, const SimulateOptions& options) {
   request.observe = [&frames](const Snapshot& frame) { frames.push_back(frame); };
   const RunResult run = simulate(model, request);
   json result = summary_json(run.summary);
-  finish_run(options, model, run, result);
+  add_stable_step(model, run, result);
   result["terms"] = model.term_names();
-  json probes = json::object();
+  std::string text = summary_text(run.summary, model.node_count());
   if (!definition.probes.empty() || !definition.grips.empty()) {
     const Snapshot start = take_snapshot(model, model.flat_state(definition.start_height), RigDrive{});
-    result["probes"] = probes = probes_json(definition, model, start, run.final);
+    result["probes"] = probes_json(definition, model, start, run.final);
+    text += probes_text(result["probes"]);
   }
-  std::string text = summary_text(run.summary, model.node_count());
-  for (const auto& [name, probe] : probes.items()) {
-    const auto u = probe["displacement"];
-    char line[200];
-    std::snprintf(line, sizeof line, "%s moved by (%.3f, %.3f, %.3f) mm\n", name.c_str(),
-                  1e3 * u[0].get<double>(), 1e3 * u[1].get<double>(), 1e3 * u[2].get<double>());
-    text += line;
-    if (!probe.contains("force")) continue;
-    const auto f = probe["force"];
-    std::snprintf(line, sizeof line, "%s pulls with (%.3f, %.3f, %.3f) N\n", name.c_str(), f[0].get<double>(),
-                  f[1].get<double>(), f[2].get<double>());
-    text += line;
-  }
-  const int code = deliver(result, text, options.common, &definition);
-  if (code == kDone && !options.common.out.empty()) {
-    write_frames(options.common.out, "ply", model.scene().mesh, frames,
-                 definition.mold ? &*definition.mold : nullptr, definition.material.thickness);
-  }
-  return run.summary.status != RunStatus::diverged ? code : kNotFinished;
+  keep_all([&] { save(options, model, run.state); },
+           [&] {
+             if (!options.common.out.empty()) {
+               create_directories(std::filesystem::path(options.common.out));
+               write_frames(options.common.out, "ply", model.scene().mesh, frames,
+                            definition.mold ? &*definition.mold : nullptr, definition.material.thickness);
+             }
+             deliver(result, text, options.common, &definition);
+           });
+  return run.summary.status != RunStatus::diverged ? kDone : kNotFinished;
 }
 
-/// The schedule by name or from a file; prints errors and returns nothing if the file is wrong.
-std::optional<Schedule> schedule_of(const DrapeProblem& problem, const std::string& name) {
+/// The schedule by name or from a file. @throws WrongInput with all that is wrong with the file.
+Schedule schedule_of(const DrapeProblem& problem, const std::string& name) {
   if (name == "uniform") return to_schedule(problem.frame(), uniform_strokes(problem.frame()));
   if (name == "wave") return to_schedule(problem.frame(), wave_strokes(problem.frame()));
-  if (std::filesystem::is_directory(name)) {
-    std::cerr << name << ": is a folder; a schedule is uniform, wave or a file like schedule.json\n";
-    return std::nullopt;
+  std::error_code error;
+  if (std::filesystem::is_directory(name, error)) {
+    throw WrongInput(
+        fmt::format("{}: is a folder; a schedule is uniform, wave or a file like schedule.json", name));
   }
   const RigOptions& rig = *problem.definition().grippers;
   ScheduleReading reading = read_schedule(name, rig);
+  if (!reading.errors.empty()) throw InputErrors(reading.errors);
   constexpr double kRounding = 1e-3;  // knots are rounded: a path at the limit may exceed it by as much
-  if (reading.errors.empty() && reading.value.largest_velocity() > rig.max_velocity * (1 + kRounding)) {
-    std::cerr << name << ": moves at up to " << reading.value.largest_velocity()
-              << " m/s, more than grippers.max_velocity (" << rig.max_velocity << " m/s)\n";
-    return std::nullopt;
+  const double fastest = reading.value.largest_velocity();
+  if (fastest > rig.max_velocity * (1 + kRounding)) {
+    throw WrongInput(fmt::format("{}: moves at up to {:g} m/s, more than grippers.max_velocity ({:g} m/s)",
+                                 name, fastest, rig.max_velocity));
   }
-  if (reading.errors.empty()) return std::move(reading.value);
-  print_errors(reading.errors);
-  return std::nullopt;
+  return std::move(reading.value);
 }
 
 std::string score_line(const Drape& drape) {
   const Score& score = drape.score;
   if (!score.valid) return "no score: " + score.reason + "\n";
-  char line[500];
-  std::snprintf(
-      line, sizeof line,
-      "gap max %.2f mm, r.m.s. %.2f mm; boundary offset max %.2f mm, r.m.s. %.2f mm; shear %.1f deg; fibre "
-      "tension %.2f %%, compression %.2f %%; objective %.3f\n"
-      "actuator force max %.1f N; penetration %.3f mm; kinetic over internal energy at most %.2g\n",
+  return fmt::format(
+      "gap max {:.2f} mm, r.m.s. {:.2f} mm; boundary offset max {:.2f} mm, r.m.s. {:.2f} mm; shear {:.1f} "
+      "deg; "
+      "fibre tension {:.2f} %, compression {:.2f} %; objective {:.3f}\n"
+      "actuator force max {:.1f} N; penetration {:.3f} mm; kinetic over internal energy at most {:.2g}\n",
       1e3 * score.max_gap, 1e3 * score.rms_gap, 1e3 * score.max_boundary_offset,
       1e3 * score.rms_boundary_offset, score.max_shear_deg, 1e2 * score.max_fibre_strain,
       1e2 * score.max_fibre_compression, score.objective, score.max_actuator_force,
       1e3 * drape.run.summary.largest_penetration, drape.run.summary.largest_kinetic_ratio);
-  return line;
+}
+
+/// The files of a drape beside result.json and resolved.json.
+void write_drape(const std::filesystem::path& folder, const DrapeProblem& problem, const Drape& drape,
+                 const Schedule& schedule, const SimulateOptions& options) {
+  const Case& definition = problem.definition();
+  create_directories(folder);
+  write_frames(folder, "ply", problem.model(options.fidelity).scene().mesh, drape.frames, &*definition.mold,
+               definition.material.thickness);
+  write_mold_vtu(folder / "mold.vtu", *definition.mold);
+  write_text(folder / "drape.svg",
+             drape_picture({drape_panel(problem, drape, options.fidelity, options.schedule)},
+                           definition.mold->extent()));
+  write_schedule(folder / "schedule.json", schedule, *definition.grippers);
+  write_schedule_csv(folder / "schedule.csv", schedule, *definition.grippers);
 }
 
 int simulate_drape(Case definition, const SimulateOptions& options) {
   const DrapeProblem problem(std::move(definition));
   print_warnings(map_warnings(problem.definition(), problem.mapping()), options.common);
-  const std::optional<Schedule> schedule = schedule_of(problem, options.schedule);
-  if (!schedule) return kInputWrong;
+  const Schedule schedule = schedule_of(problem, options.schedule);
   const bool files = !options.common.out.empty();
   const Model& model = problem.model(options.fidelity);
   const PartOfRun part = part_of_run(options, model);
+  try_folder(options.common.out);
   print_terms(model, options.common);
-  const Drape drape = problem.run(*schedule, options.fidelity, files ? options.frames : 0,
+  const Drape drape = problem.run(schedule, options.fidelity, files ? options.frames : 0,
                                   {part.from ? &*part.from : nullptr, part.pause});
   json result = summary_json(drape.run.summary);
-  finish_run(options, model, drape.run, result);
+  add_stable_step(model, drape.run, result);
   result["score"] = score_json(drape.score);
   result["terms"] = model.term_names();
   const std::string text = summary_text(drape.run.summary, model.node_count()) + score_line(drape);
-  const int code = deliver(result, text, options.common, &problem.definition());
-  if (code == kDone && files) {
-    const std::filesystem::path folder(options.common.out);
-    const Case& resolved = problem.definition();
-    write_frames(folder, "ply", model.scene().mesh, drape.frames, &*resolved.mold,
-                 resolved.material.thickness);
-    write_mold_vtu(folder / "mold.vtu", *resolved.mold);
-    write_text(folder / "drape.svg",
-               drape_picture({drape_panel(problem, drape, options.fidelity, options.schedule)},
-                             resolved.mold->extent()));
-    write_schedule(folder / "schedule.json", *schedule, *resolved.grippers);
-    write_schedule_csv(folder / "schedule.csv", *schedule, *resolved.grippers);
+  keep_all([&] { save(options, model, drape.run.state); },
+           [&] {
+             if (files) write_drape(options.common.out, problem, drape, schedule, options);
+             deliver(result, text, options.common, &problem.definition());
+           });
+  return drape.score.valid || drape.run.summary.status == RunStatus::paused ? kDone : kNotFinished;
+}
+
+/// What the options ask of the case must be possible. @throws WrongInput with the reason.
+void check_options(const Case& definition, const SimulateOptions& options) {
+  std::error_code error;
+  if (!options.common.out.empty() &&
+      std::filesystem::exists(std::filesystem::path(options.common.out) / "evaluations.jsonl", error)) {
+    throw WrongInput(
+        fmt::format("{}: --out holds a plan, whose schedule would be overwritten; choose another folder",
+                    options.common.out));
   }
-  return drape.score.valid || drape.run.summary.status == RunStatus::paused ? code : kNotFinished;
+  if (definition.fidelities.count(options.fidelity) == 0) {
+    std::vector<std::string> names;
+    for (const auto& entry : definition.fidelities) names.push_back(entry.first);
+    throw InputErrors({{options.file, 0, "/fidelities",
+                        fmt::format("there is no fidelity \"{}\"; there are {}", options.fidelity,
+                                    fmt::join(names, " "))}});
+  }
+  if (!definition.grippers && !(definition.duration > 0)) {
+    throw InputErrors(
+        {{options.file, 0, "/duration", "a case without grippers needs a duration, e.g. \"2 s\""}});
+  }
 }
 
 int run_simulate(const SimulateOptions& options) {
-  std::optional<Case> definition = load_case(options.file, options.common, {"material"});
-  if (!definition) return kInputWrong;
-  if (!options.common.out.empty() &&
-      std::filesystem::exists(std::filesystem::path(options.common.out) / "evaluations.jsonl")) {
-    std::cerr << options.common.out
-              << ": --out holds a plan, whose schedule would be overwritten; choose another folder\n";
-    return kInputWrong;
-  }
-  if (definition->fidelities.count(options.fidelity) == 0) {
-    std::cerr << options.file << ": /fidelities: there is no fidelity \"" << options.fidelity
-              << "\"; there are";
-    for (const auto& entry : definition->fidelities) std::cerr << ' ' << entry.first;
-    std::cerr << '\n';
-    return kInputWrong;
-  }
-  if (!definition->grippers && !(definition->duration > 0)) {
-    std::cerr << options.file << ": /duration: a case without grippers needs a duration, e.g. \"2 s\"\n";
-    return kInputWrong;
-  }
-  try {
-    return definition->grippers ? simulate_drape(std::move(*definition), options)
-                                : simulate_free(*definition, options);
-  } catch (const std::invalid_argument& error) {
-    std::cerr << options.file << ": " << error.what() << '\n';
-    return kInputWrong;
-  } catch (const std::runtime_error& error) {
-    std::cerr << options.file << ": not finished: " << error.what() << '\n';
-    return kNotFinished;
-  } catch (const std::domain_error& error) {
-    std::cerr << options.file << ": the ply cannot be mapped or reached: " << error.what() << '\n';
-    return kNotFinished;
-  }
+  Case definition = load_case(options.file, options.common, {"material"});
+  check_options(definition, options);
+  return definition.grippers ? simulate_drape(std::move(definition), options)
+                             : simulate_free(definition, options);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // stress: numerical stability on stiff and extreme scenes, as a table.
-#include <cstdio>
+#include <fmt/format.h>
+
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -30,30 +31,12 @@ std::vector<StressScene> chosen_scenes(const StressOptions& options) {
 }
 
 std::string line_of(const StressOutcome& outcome) {
-  char head[300];
-  std::snprintf(head, sizeof head, "%-8s %-16s %s: ", verdict_name(outcome.verdict), outcome.group.c_str(),
-                outcome.name.c_str());
-  return head + outcome.reason + "\n";
+  return fmt::format("{:<8} {:<16} {}: {}\n", verdict_name(outcome.verdict), outcome.group, outcome.name,
+                     outcome.reason);
 }
 
-int stress(const StressOptions& options) {
-  if (!options.common.overrides.empty() || options.common.seed) {
-    std::cerr << "stress: --set and --seed: its scenes are no case files, nothing can be changed in them\n";
-    return kInputWrong;
-  }
-  const std::vector<StressScene> scenes = chosen_scenes(options);
-  if (scenes.empty()) {
-    std::cerr << "stress: no scene has a name with such a text; run it without --only to see all\n";
-    return kInputWrong;
-  }
-  if (!options.common.out.empty()) {  // minutes of runs are not to be lost
-    std::error_code error;
-    std::filesystem::create_directories(options.common.out, error);
-    if (error) {
-      std::cerr << options.common.out << ": cannot be made: " << error.message() << '\n';
-      return kInputWrong;
-    }
-  }
+/// Plays the scenes side by side; each has a line on stderr when it is done.
+std::vector<StressOutcome> play_all(const std::vector<StressScene>& scenes, const CommonOptions& options) {
   std::vector<StressOutcome> outcomes(scenes.size());
   std::mutex printing;
   size_t done = 0;
@@ -63,25 +46,34 @@ int stress(const StressOptions& options) {
         outcomes[size_t(k)] = play_stress(scenes[size_t(k)]);
         const std::lock_guard<std::mutex> lock(printing);
         ++done;
-        if (options.common.quiet) return;
-        char time[60];
-        std::snprintf(time, sizeof time, "%3zu of %zu, %5.1f s  ", done, scenes.size(),
-                      outcomes[size_t(k)].wall_seconds);
-        std::cerr << time << line_of(outcomes[size_t(k)]);
+        if (options.quiet) return;
+        std::cerr << fmt::format("{:3} of {}, {:5.1f} s  {}", done, scenes.size(),
+                                 outcomes[size_t(k)].wall_seconds, line_of(outcomes[size_t(k)]));
       },
-      options.common.threads);
+      options.threads);
+  return outcomes;
+}
+
+int stress(const StressOptions& options) {
+  if (!options.common.overrides.empty() || options.common.seed)
+    throw WrongInput("--set and --seed: its scenes are no case files, nothing can be changed in them");
+  const std::vector<StressScene> scenes = chosen_scenes(options);
+  if (scenes.empty())
+    throw WrongInput("no scene has a name with such a text; run it without --only to see all");
+  try_folder(options.common.out);
+  const std::vector<StressOutcome> outcomes = play_all(scenes, options.common);
   const nlohmann::json result = stress_json(outcomes);
   std::string text;
   for (const StressOutcome& outcome : outcomes) text += line_of(outcome);
-  text += "\n" + std::to_string(outcomes.size()) + " scenes, " + std::to_string(result["failures"].size()) +
-          " wrong\n";
-  const int code = deliver(result, text, options.common);
-  if (code == kDone && !options.common.out.empty()) {
+  text += fmt::format("\n{} scenes, {} wrong\n", outcomes.size(), result["failures"].size());
+  if (!options.common.out.empty()) {
     const std::filesystem::path folder(options.common.out);
+    create_directories(folder);
     write_text(folder / "stress.csv", stress_csv(outcomes));
     write_text(folder / "stress.md", stress_markdown(outcomes));
   }
-  return result["failures"].empty() ? code : kNotFinished;
+  deliver(result, text, options.common);
+  return result["failures"].empty() ? kDone : kNotFinished;
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 // study: error against run time.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "planner/base/statistics.hpp"
 #include "planner/cli/cli.hpp"
@@ -46,9 +46,10 @@ class ProgressLine {
     if (done < of && now - shown_ < std::chrono::seconds(kSeconds)) return;
     shown_ = now;
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    std::fprintf(stderr, "  %4d/%d  %s", done, of, what.c_str());
-    if (done > 1 && done < of) std::fprintf(stderr, "   about %.0f s left", seconds / done * (of - done));
-    std::fputc('\n', stderr);
+    std::cerr << fmt::format("  {:4}/{}  {}", done, of, what);
+    if (done > 1 && done < of)
+      std::cerr << fmt::format("   about {:.0f} s left", seconds / done * (of - done));
+    std::cerr << '\n';
   }
 
  private:
@@ -226,50 +227,42 @@ Study study_case(const StudySubject& subject, StudyRunner& runner, const StudyOp
   return study;
 }
 
-/// The settings of --at, without what the case has anyway. Errors go to stderr.
-std::optional<Settings> settings_at(const StudyOptions& options) {
+/// The settings of --at, without what the case has anyway. @throws WrongInput with what is wrong with them.
+Settings settings_at(const StudyOptions& options) {
   Settings at;
   for (const std::string& text : options.at) {
     const size_t equals = text.find('=');
-    if (equals == std::string::npos || equals == 0) {
-      std::cerr << "study: --at: \"" << text << "\" is not path=value\n";
-      return std::nullopt;
-    }
+    if (equals == std::string::npos || equals == 0)
+      throw WrongInput(fmt::format("--at: \"{}\" is not path=value", text));
     at[text.substr(0, equals)] = text.substr(equals + 1);
   }
   CommonOptions changed = options.common;
   changed.overrides.insert(changed.overrides.end(), options.at.begin(), options.at.end());
-  if (!load_case(options.file, changed, {"material"})) return std::nullopt;
+  static_cast<void>(load_case(options.file, changed, {"material"}));
   return at;
 }
 
-/// What is asked for by name must be possible. Errors go to stderr.
-bool parts_fit(const Case& definition, const StudyOptions& options) {
-  bool fit = true;
-  const auto refuse = [&fit](const std::string& text) {
-    std::cerr << "study: " << text << '\n';
-    fit = false;
-  };
+/// What is asked for by name must be possible. @throws WrongInput with the first that is not.
+void check_parts(const Case& definition, const StudyOptions& options) {
   for (const std::string& part : options.parts) {
     if (part == "mapping" && !definition.mapping)
-      refuse("--part mapping: the case has no section \"mapping\"");
+      throw WrongInput("--part mapping: the case has no section \"mapping\"");
     const bool drapes = part == "ranks" || part == "noise" || part == "reach" || part == "search";
-    if (drapes && !definition.grippers) refuse("--part " + part + ": the case has no section \"grippers\"");
+    if (drapes && !definition.grippers)
+      throw WrongInput(fmt::format("--part {}: the case has no section \"grippers\"", part));
   }
-  if (options.run.empty()) return fit;
+  if (options.run.empty()) return;
   const std::string log = options.run + "/evaluations.jsonl";
-  try {
-    if (!std::filesystem::exists(log)) throw std::runtime_error(log + ": there is no such file");
-    const EvaluationLog known(log, case_hash(definition));
-  } catch (const std::exception& error) {
-    refuse("--run: " + std::string(error.what()));
-  }
-  return fit;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(log, error))
+    throw WrongInput(fmt::format("--run: {}: there is no such file", log));
+  const EvaluationLog known(log, case_hash(definition));  // throws for another case's
 }
 
 /// The whole study, once all input is known to be good.
 int study_into(const std::filesystem::path& folder, const Case& definition, const StudySubject& subject,
                const StudyOptions& options) {
+  create_directories(folder);
   ProgressLine line;
   StudyRunner runner(subject,
                      {folder / "study.jsonl", options.resume, options.common.threads, options.repeats},
@@ -280,37 +273,29 @@ int study_into(const std::filesystem::path& folder, const Case& definition, cons
   write_study(folder, study);
   CommonOptions common = options.common;
   common.out = folder.string();
-  const int code = deliver(study_json(study), study_text(study), common, &definition);
+  deliver(study_json(study), study_text(study), common, &definition);
   const bool referred =
       study.points.empty() || std::any_of(study.points.begin(), study.points.end(),
                                           [](const StudyPoint& point) { return point.valid(); });
-  if (!referred) std::cerr << "study: no setting can be compared with the reference\n";
-  return referred ? code : kNotFinished;
+  if (!referred) throw NotFinished("no setting can be compared with the reference");
+  return kDone;
 }
 
 int run_study(const StudyOptions& options) {
-  const std::optional<Case> definition = load_case(options.file, options.common, {"material"});
-  if (!definition || !parts_fit(*definition, options)) return kInputWrong;
-  const std::optional<Settings> at = settings_at(options);
-  if (!at) return kInputWrong;
+  const Case definition = load_case(options.file, options.common, {"material"});
+  check_parts(definition, options);
+  const Settings at = settings_at(options);
   std::vector<std::string> overrides = options.common.overrides;
-  if (options.common.seed) overrides.push_back("optimise.seed=" + std::to_string(*options.common.seed));
+  if (options.common.seed) overrides.push_back(fmt::format("optimise.seed={}", *options.common.seed));
   const std::filesystem::path folder = options.common.out.empty()
-                                           ? std::filesystem::path("out") / ("study-" + definition->name)
+                                           ? std::filesystem::path("out") / ("study-" + definition.name)
                                            : std::filesystem::path(options.common.out);
+  const StudySubject subject(options.file, overrides, at);
+  try_folder(folder);
   try {
-    const StudySubject subject(options.file, overrides, *at);
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw std::invalid_argument(folder.string() + ": cannot be made: " + error.message());
-    return study_into(folder, *definition, subject, options);
-  } catch (const std::invalid_argument& error) {
-    std::cerr << error.what() << '\n';
-    return kInputWrong;
-  } catch (const std::runtime_error& error) {
-    std::cerr << "study: not finished: " << error.what() << "; what was done is kept in " << folder.string()
-              << '\n';
-    return kNotFinished;
+    return study_into(folder, definition, subject, options);
+  } catch (const NotFinished& error) {
+    throw NotFinished(fmt::format("{}; what was done is kept in {}", error.what(), folder.string()));
   }
 }
 

@@ -20,7 +20,7 @@ struct MapResult {
 };
 
 /// Maps the ply of a case that has a mold and a mapping.
-/// @throws std::domain_error where the mold ends or a cell's minimisation fails.
+/// @throws NotFinished where the mold ends or a cell's minimisation fails.
 MapResult map_case(const Case& definition);
 
 /// What a user should know of a mapping before trusting anything built on it: a ply that sticks out of the

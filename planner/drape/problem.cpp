@@ -1,9 +1,13 @@
 #include "planner/drape/problem.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <new>
 
+#include "mapping/error.hpp"
 #include "planner/drape/scoring.hpp"
 
 namespace drapeplan {
@@ -95,6 +99,17 @@ Scene scene_of(const Case& definition, const FemOptions& options) {
   return scene;
 }
 
+Model model_of(const Case& definition, const FemOptions& options) {
+  try {
+    return Model(scene_of(definition, options));
+  } catch (const std::bad_alloc&) {
+    const double area = bounding_box(corners_of(definition.ply)).volume();
+    throw NotFinished(
+        fmt::format("not enough memory for about {:.0f} nodes; a larger fem.mesh_size needs less",
+                    area / (options.mesh_size * options.mesh_size)));
+  }
+}
+
 ReachProblem reach_problem_of(const Case& definition, const std::vector<Eigen::Vector3d>& targets) {
   const RigOptions& rig = *definition.grippers;
   ReachProblem problem{rig, *definition.mold, targets, definition.ply.position};
@@ -114,7 +129,7 @@ DrapeProblem::DrapeProblem(Case definition)
   for (const auto& entry : case_.fidelities) models_[entry.first] = std::make_unique<Lazy<Model>>();
   const bool reachable = case_.schedule.aim == Aim::reachable;
   if (reachable && !reach().converged) {
-    throw std::domain_error("the schedule aims at reachable places, but there are none: " + reach().status);
+    throw NotFinished("the schedule aims at reachable places, but there are none: " + reach().status);
   }
   frame_.rig = *case_.grippers;
   const std::vector<Eigen::Vector3d> joints =
@@ -134,7 +149,7 @@ const ReachResult& DrapeProblem::reach() const {
 }
 
 const Model& DrapeProblem::model(const std::string& fidelity) const {
-  return models_.at(fidelity)->get([&] { return Model(scene_of(case_, case_.fidelities.at(fidelity))); });
+  return models_.at(fidelity)->get([&] { return model_of(case_, case_.fidelities.at(fidelity)); });
 }
 
 Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, int frames,

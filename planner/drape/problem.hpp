@@ -22,8 +22,12 @@ namespace drapeplan {
 inline constexpr const char* kReport = "report";
 
 /// The FE scene of a case at a fidelity: sections that are absent add nothing.
-/// @throws std::invalid_argument if the scene cannot be built.
+/// @throws WrongInput if the scene cannot be built.
 Scene scene_of(const Case& definition, const FemOptions& options);
+
+/// The model of that scene. @throws also NotFinished, with the number of nodes, if the memory does not
+/// suffice.
+Model model_of(const Case& definition, const FemOptions& options);
 
 /// The reach problem of a case with grippers. @param targets  mapped places of the pads [m].
 ReachProblem reach_problem_of(const Case& definition, const std::vector<Eigen::Vector3d>& targets);
@@ -47,7 +51,7 @@ class DrapeProblem {
  public:
   /// Maps the ply; where the schedule aims at reachable places, also solves the reach problem.
   /// @param value  needs mold, mapping and grippers.
-  /// @throws std::domain_error if the ply cannot be mapped, or not be reached where the schedule needs it.
+  /// @throws NotFinished if the ply cannot be mapped, or not be reached where the schedule needs it.
   explicit DrapeProblem(Case definition);
 
   [[nodiscard]] const Case& definition() const { return case_; }
@@ -55,7 +59,7 @@ class DrapeProblem {
   [[nodiscard]] const ReachProblem& reach_problem() const { return reach_problem_; }
   [[nodiscard]] const ReachResult& reach() const;
   [[nodiscard]] const SequenceFrame& frame() const { return frame_; }
-  /// @throws std::out_of_range if the case has no such fidelity, std::invalid_argument if its model cannot be
+  /// @throws std::out_of_range if the case has no such fidelity, WrongInput if its model cannot be
   /// built.
   [[nodiscard]] const Model& model(const std::string& fidelity) const;
 

@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "fem/run/monitor.hpp"
+#include "mapping/error.hpp"
 #include "planner/base/quantity.hpp"
 #include "planner/base/statistics.hpp"
 #include "planner/base/text.hpp"
@@ -235,7 +236,7 @@ Case StudySubject::with(const Settings& settings) const {
   if (reading.errors.empty()) return std::move(reading.definition);
   std::string text;
   for (const InputError& error : reading.errors) text += (text.empty() ? "" : "\n") + error.text();
-  throw std::invalid_argument(text);
+  throw WrongInput(text);
 }
 
 std::vector<Schedule> StudySubject::schedules(int count) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "mapping/error.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/study/study.hpp"
 
@@ -45,7 +46,7 @@ bool can_turn(const StudySubject& subject, const Knob& knob) {
   try {
     (void)subject.with({{knob.path, knob.values.front()}});
     return true;
-  } catch (const std::invalid_argument&) {
+  } catch (const WrongInput&) {
     return false;
   }
 }
