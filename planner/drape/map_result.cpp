@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mapping/error.hpp"
+
 namespace drapeplan {
 namespace {
 
@@ -67,7 +69,11 @@ std::string placement_warning(const Case& definition, const Placement& placement
 
 MapResult map_case(const Case& definition) {
   MapResult result;
-  result.net = map_ply(*definition.mold, definition.ply, *definition.mapping);
+  try {
+    result.net = map_ply(*definition.mold, definition.ply, *definition.mapping);
+  } catch (const NotFinished& error) {
+    throw NotFinished(std::string("the ply cannot be mapped: ") + error.what());
+  }
   result.boundary = prescribed_boundary(result.net, *definition.mold, definition.ply);
   result.corners = mapped_corners(result.net);
   const int grippers = definition.grippers ? definition.grippers->count() : 0;
