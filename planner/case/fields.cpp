@@ -206,6 +206,52 @@ void visit_fem(FieldVisitor& v, FemOptions& f) {
            "Share of the critical damping of a node on its contact spring", Dimension::none, from(0, 1)});
 }
 
+/// What holds a ply without grippers: clamped edges, and grips that may move.
+void visit_supports(FieldVisitor& v, Case& c) {
+  v.section({"supports", "What holds a ply without grippers", false, {"material"}}, !c.clamped.empty(), [&] {
+    ChoiceList edges{{"left", "right", "bottom", "top"}, {}, {}};
+    edges.get = [&c] {
+      std::vector<int> indices;
+      for (const Edge edge : c.clamped) indices.push_back(int(edge));
+      return indices;
+    };
+    edges.set = [&c](const std::vector<int>& indices) {
+      c.clamped.clear();
+      for (const int index : indices) c.clamped.push_back(Edge(index));
+    };
+    v.field({"clamped",
+             edges,
+             "Edges of the ply: smallest u, largest u, smallest v, largest v",
+             Dimension::none,
+             {},
+             true});
+  });
+  ObjectList grips = object_list("grips", "Rigid clamps on straight pieces of the outline, which may move",
+                                 c.grips, [&v](GripOptions& grip) { visit_grip(v, grip); });
+  grips.needs = {"material"};
+  v.list(grips);
+}
+
+/// What is shown beside the results.
+void visit_views(FieldVisitor& v, Case& c) {
+  ObjectList probes =
+      object_list("probes", "Points of the ply whose displacement is reported", c.probes, [&v](Probe& probe) {
+        v.field({"name", &probe.name, "Name in the results", Dimension::none, {}, true});
+        v.field({"place", &probe.place, "In the ply (u, v)", Dimension::length, {}, true});
+      });
+  probes.needs = {"material"};
+  v.list(probes);
+  ObjectList references = object_list(
+      "references", "Published results that are shown beside the own ones", c.references, [&v](Reference& r) {
+        v.field({"name", &r.name, "Name in tables", Dimension::none, {}, true});
+        v.field({"max_gap", &r.max_gap, "Largest gap", Dimension::length, from(0), true});
+        v.field({"max_boundary_offset", &r.max_boundary_offset, "Largest boundary offset", Dimension::length,
+                 from(0), true});
+      });
+  references.needs = {"grippers"};
+  v.list(references);
+}
+
 void visit_physics(FieldVisitor& v, CaseFields& fields) {
   Case& c = fields.definition;
   optional_section(
@@ -239,44 +285,8 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
                      v.field({"hold", &rest.hold, "For how long it must be so, on the simulation's clock",
                               Dimension::time, from(0)});
                    });
-  v.section({"supports", "What holds a ply without grippers", false, {"material"}}, !c.clamped.empty(), [&] {
-    ChoiceList edges{{"left", "right", "bottom", "top"}, {}, {}};
-    edges.get = [&c] {
-      std::vector<int> indices;
-      for (const Edge edge : c.clamped) indices.push_back(int(edge));
-      return indices;
-    };
-    edges.set = [&c](const std::vector<int>& indices) {
-      c.clamped.clear();
-      for (const int index : indices) c.clamped.push_back(Edge(index));
-    };
-    v.field({"clamped",
-             edges,
-             "Edges of the ply: smallest u, largest u, smallest v, largest v",
-             Dimension::none,
-             {},
-             true});
-  });
-  ObjectList grips = object_list("grips", "Rigid clamps on straight pieces of the outline, which may move",
-                                 c.grips, [&v](GripOptions& grip) { visit_grip(v, grip); });
-  grips.needs = {"material"};
-  v.list(grips);
-  ObjectList probes =
-      object_list("probes", "Points of the ply whose displacement is reported", c.probes, [&v](Probe& probe) {
-        v.field({"name", &probe.name, "Name in the results", Dimension::none, {}, true});
-        v.field({"place", &probe.place, "In the ply (u, v)", Dimension::length, {}, true});
-      });
-  probes.needs = {"material"};
-  v.list(probes);
-  ObjectList references = object_list(
-      "references", "Published results that are shown beside the own ones", c.references, [&v](Reference& r) {
-        v.field({"name", &r.name, "Name in tables", Dimension::none, {}, true});
-        v.field({"max_gap", &r.max_gap, "Largest gap", Dimension::length, from(0), true});
-        v.field({"max_boundary_offset", &r.max_boundary_offset, "Largest boundary offset", Dimension::length,
-                 from(0), true});
-      });
-  references.needs = {"grippers"};
-  v.list(references);
+  visit_supports(v, c);
+  visit_views(v, c);
   v.field({"start_height",
            &c.start_height,
            "Height of the level ply without grippers",
