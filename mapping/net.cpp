@@ -26,7 +26,7 @@ using HalfLines = std::array<Eigen::Vector2d, 4>;
 
 [[noreturn]] void throw_at(const char* what, const Eigen::Vector3d& at) {
   std::ostringstream text;
-  text << "the ply cannot be mapped: " << what << " (x, y) = (" << at.x() << ", " << at.y() << ") m";
+  text << "mapping: " << what << " (x, y) = (" << at.x() << ", " << at.y() << ") m";
   throw NotFinished(text.str());
 }
 

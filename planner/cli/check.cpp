@@ -50,7 +50,7 @@ struct SchemaOptions {
 int schema(const SchemaOptions& options) {
   const json document = case_schema();
   try_folder(options.common.out);
-  deliver(document, document.dump(2) + '\n', options.common);
+  deliver(document, document_text(document), options.common);
   return kDone;
 }
 

@@ -118,15 +118,18 @@ void print_warnings(const std::vector<std::string>& warnings, const CommonOption
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
 }
 
+std::string document_text(const nlohmann::json& result) {
+  return result.dump(kIndent, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
 void deliver(const nlohmann::json& result, const std::string& text, const CommonOptions& options,
              const Case* resolved) {
-  const std::string document = result.dump(kIndent) + "\n";
+  const std::string document = document_text(result);
   if (!options.out.empty()) {
     const std::filesystem::path folder(options.out);
     create_directories(folder);
     write_text(folder / "result.json", document);
-    if (resolved != nullptr)
-      write_text(folder / "resolved.json", resolved_case(*resolved).dump(kIndent) + "\n");
+    if (resolved != nullptr) write_text(folder / "resolved.json", document_text(resolved_case(*resolved)));
   }
   if (options.json || !options.quiet) print(options.json ? document : text, !options.out.empty());
 }

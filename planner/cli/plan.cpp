@@ -128,7 +128,7 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, const std
   if (talk) print_start(problem);
   print_warnings(map_warnings(problem.definition(), problem.mapping()), options.common);
   create_directories(folder);
-  write_text(folder / "resolved.json", resolved_case(problem.definition()).dump(2) + "\n");
+  write_text(folder / "resolved.json", document_text(resolved_case(problem.definition())));
   ProgressLine line;
   const PlanResult result =
       plan(problem, {folder, options.resume, options.common.threads}, [&](const Progress& progress) {
@@ -137,7 +137,7 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, const std
   if (result.best.score.valid)
     write_plan(folder, problem, result);  // no schedule for a robot from failed runs
   json out = plan_json(problem, result);
-  write_text(folder / "result.json", out.dump(2) + "\n");
+  write_text(folder / "result.json", document_text(out));
   return {std::move(out), result_text(problem, result, folder), result.best.score.valid};
 }
 
@@ -204,7 +204,7 @@ int plan_all(const PlanVerbOptions& options) {
     if (code == kDone || one == kInputWrong) code = one;
   }
   if (options.common.json)
-    print((results.size() == 1 ? results[0] : json{{"cases", results}}).dump(2) + "\n", true);
+    print(document_text(results.size() == 1 ? results[0] : json{{"cases", results}}), true);
   return code;
 }
 

@@ -6,12 +6,18 @@
 #include <cstdio>
 #include <numbers>
 
+#include "mapping/error.hpp"
+
 namespace drapeplan {
 
 MapResult map_case(const Case& definition) {
   constexpr double kDegrees = 180 / std::numbers::pi;
   MapResult result;
-  result.net = map_ply(*definition.mold, definition.ply, *definition.mapping);
+  try {
+    result.net = map_ply(*definition.mold, definition.ply, *definition.mapping);
+  } catch (const NotFinished& error) {
+    throw NotFinished(std::string("the ply cannot be mapped: ") + error.what());
+  }
   result.boundary = prescribed_boundary(result.net, *definition.mold, definition.ply);
   result.corners = mapped_corners(result.net);
   const int grippers = definition.grippers ? definition.grippers->count() : 0;
