@@ -1,12 +1,18 @@
 #include "fem/run/state_file.hpp"
 
+#include <unistd.h>
+
 #include <bit>
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <string>
+#include <system_error>
 #include <type_traits>
 
 #include "fem/core/hash.hpp"
+#include "mapping/error.hpp"
 
 // Layout: the line kMagic, then 64-bit words, lowest byte first: the model's fingerprint, the state, and at
 // the end the FNV-1a hash of all words before. Lists have their length before them.
@@ -133,15 +139,20 @@ void save_state(const std::filesystem::path& path, const Model& model, const Sta
   visit_state(state, [&writer](const auto& part) { writer(part); });
   const std::uint64_t sum = checksum(writer.bytes());
   writer.word(sum);
-  std::filesystem::path beside = path;
-  beside += ".part";
+  std::filesystem::path beside = path;  // a name that no other process uses
+  beside += ".part-" + std::to_string(::getpid());
+  std::error_code error;
   {
     std::ofstream file(beside, std::ios::binary);
     file << kMagic << writer.bytes();
-    file.flush();
-    if (!file) throw std::runtime_error(path.string() + ": cannot be written");
+    file.close();
+    if (!file) error = std::error_code(errno, std::generic_category());
   }
-  std::filesystem::rename(beside, path);
+  if (!error) std::filesystem::rename(beside, path, error);
+  if (!error) return;
+  std::error_code ignored;
+  std::filesystem::remove(beside, ignored);
+  throw NotFinished(path.string() + ": cannot be written: " + error.message());
 }
 
 StateReading load_state(const std::filesystem::path& path, const Model& model) {

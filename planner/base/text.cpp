@@ -1,11 +1,13 @@
 #include "planner/base/text.hpp"
 
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <stdexcept>
+#include <cstdio>
 #include <system_error>
+
+#include "mapping/error.hpp"
 
 namespace drapeplan {
 
@@ -58,15 +60,14 @@ std::string escape_markup(std::string_view text) {
 
 void write_text(const std::filesystem::path& file, std::string_view text) {
   const std::filesystem::path partial = file.string() + ".partial";
-  {
-    std::ofstream stream(partial, std::ios::binary);
-    stream.write(text.data(), std::streamsize(text.size()));
-    stream.close();
-    if (!stream) throw std::runtime_error(file.string() + ": cannot be written");
-  }
-  std::error_code error;
-  std::filesystem::rename(partial, file, error);
-  if (error) throw std::runtime_error(file.string() + ": cannot be written: " + error.message());
+  std::FILE* stream = std::fopen(partial.c_str(), "wb");
+  bool good = stream != nullptr && std::fwrite(text.data(), 1, text.size(), stream) == text.size();
+  int error = good ? 0 : errno;
+  if (stream != nullptr && std::fclose(stream) != 0 && good) good = false, error = errno;
+  if (good && std::rename(partial.c_str(), file.c_str()) != 0) good = false, error = errno;
+  if (good) return;
+  if (stream != nullptr) std::remove(partial.c_str());
+  throw NotFinished(file.string() + ": cannot be written: " + std::generic_category().message(error));
 }
 
 }  // namespace drapeplan

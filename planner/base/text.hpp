@@ -18,7 +18,7 @@ std::string fixed(double value, int decimals);
 std::string escape_markup(std::string_view text);
 
 /// Writes a file by way of a temporary neighbour, so that no reader ever sees half of it.
-/// @throws std::runtime_error with the file and the reason.
+/// @throws NotFinished with the file and the reason.
 void write_text(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace drapeplan

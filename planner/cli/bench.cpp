@@ -260,7 +260,8 @@ int bench(const BenchOptions& options) {
       load_case(options.file, options.common,
                 as_it_is ? Sections{"material"} : Sections{"mapping", "grippers", "material", "mold"});
   const Schedule schedule = uniform_schedule(definition);
-  try_folder(options.common.out);
+  OutputFolder out = take_folder(options.common, "bench");
+  begin_output(out, options.common);
   json result = {{"machine", machine_json(options)}, {"scenes", json::array()}};
   std::string text = options.steps > 0 ? "" : heading(result["machine"]);
   bool same = true;
@@ -273,7 +274,6 @@ int bench(const BenchOptions& options) {
   }
   if (!options.common.out.empty()) {
     const std::filesystem::path folder(options.common.out);
-    create_directories(folder);
     write_text(folder / "bench.csv", csv(result));
   }
   deliver(result, text, options.common, &definition);

@@ -38,7 +38,8 @@ int check(const CheckOptions& options) {
   if (!all.empty()) delivery.out.clear();  // wrong input: nothing is written
   const bool resolvable = all.empty() && options.files.size() == 1;
   if (!all.empty()) std::cerr << errors_text(all) << '\n';
-  try_folder(delivery.out);
+  OutputFolder out = take_folder(delivery, "check");
+  begin_output(out, delivery);
   deliver({{"cases", std::move(cases)}}, text, delivery, resolvable ? &single : nullptr);
   return all.empty() ? kDone : kInputWrong;
 }
@@ -49,7 +50,8 @@ struct SchemaOptions {
 
 int schema(const SchemaOptions& options) {
   const json document = case_schema();
-  try_folder(options.common.out);
+  OutputFolder out = take_folder(options.common, "schema");
+  begin_output(out, options.common);
   deliver(document, document_text(document), options.common);
   return kDone;
 }
@@ -66,7 +68,8 @@ int explain(const ExplainOptions& options) {
     throw WrongInput(fmt::format("there is no field \"{}\"{}", options.path,
                                  nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
   }
-  try_folder(options.common.out);
+  OutputFolder out = take_folder(options.common, "explain");
+  begin_output(out, options.common);
   deliver({{"path", options.path}, {"text", text}}, text, options.common);
   return kDone;
 }

@@ -1,13 +1,9 @@
 #include "planner/cli/cli.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "planner/base/text.hpp"
 #include "planner/cli/streams.hpp"
@@ -22,23 +18,6 @@ bool has_section(const Case& definition, const std::string& name) {
   if (name == "grippers") return definition.grippers.has_value();
   if (name == "mold") return definition.mold.has_value();
   return definition.material.thickness > 0;
-}
-
-[[noreturn]] void refuse_folder(const std::filesystem::path& folder, const std::string& reason) {
-  throw WrongInput(fmt::format("{}: results cannot be written there: {}", folder.string(), reason));
-}
-
-/// Whether a file can be made in it; `access` would say so of folders of /proc, too.
-bool takes_files(const std::filesystem::path& folder, std::string& reason) {
-  std::string trial = (folder / "trial.XXXXXX").string();
-  const int file = mkstemp(trial.data());
-  if (file < 0) {
-    reason = std::generic_category().message(errno);
-    return false;
-  }
-  close(file);
-  unlink(trial.c_str());
-  return true;
 }
 
 }  // namespace
@@ -92,25 +71,17 @@ Case load_case(const std::string& file, const CommonOptions& options, const std:
   return definition;
 }
 
-void try_folder(const std::filesystem::path& folder) {
-  if (folder.empty()) return;
-  std::error_code error;
-  std::vector<std::filesystem::path> absent;  // the innermost first
-  for (std::filesystem::path at = std::filesystem::absolute(folder, error); !error; at = at.parent_path()) {
-    if (exists(status(at, error))) break;
-    if (error && error != std::errc::no_such_file_or_directory) refuse_folder(folder, error.message());
-    error.clear();
-    if (at == at.parent_path()) break;
-    absent.push_back(at);
-  }
-  create_directories(folder, error);
-  std::string reason = error.message();
-  const bool usable = !error && takes_files(folder, reason);
-  for (const std::filesystem::path& made : absent) {
-    std::error_code ignored;
-    remove(made, ignored);
-  }
-  if (!usable) refuse_folder(folder, reason);
+OutputFolder take_folder(const CommonOptions& options, const std::string& verb) {
+  return options.out.empty() ? OutputFolder() : OutputFolder(options.out, verb);
+}
+
+void begin_output(OutputFolder& out, const CommonOptions& options, const std::vector<std::string>& kept) {
+  print_set_aside(out.begin(kept), options);
+}
+
+void print_set_aside(const std::filesystem::path& earlier, const CommonOptions& options) {
+  if (!options.quiet && !earlier.empty())
+    std::cerr << fmt::format("what an earlier run left is set aside in {}\n", earlier.string());
 }
 
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options) {
@@ -127,7 +98,6 @@ void deliver(const nlohmann::json& result, const std::string& text, const Common
   const std::string document = document_text(result);
   if (!options.out.empty()) {
     const std::filesystem::path folder(options.out);
-    create_directories(folder);
     write_text(folder / "result.json", document);
     if (resolved != nullptr) write_text(folder / "resolved.json", document_text(resolved_case(*resolved)));
   }

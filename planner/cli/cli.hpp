@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/base/output_folder.hpp"
 #include "planner/case/case.hpp"
 #include "planner/case/file.hpp"
 #include "planner/cli/failure.hpp"
@@ -77,10 +78,15 @@ Case load_case(const std::string& file, const CommonOptions& options,
 Case load_case(const std::string& file, const CommonOptions& options, const std::vector<std::string>& needs,
                std::vector<InputError>& errors);
 
-/// Tries that a folder of this name can be made and written into, before the work begins. Nothing is left of
-/// the trial. An empty name is no folder.
-/// @throws WrongInput with the place and the system's reason.
-void try_folder(const std::filesystem::path& folder);
+/// Takes the folder of --out for this verb, before the work begins; no folder if none is named.
+/// @throws WrongInput with the place and the reason.
+OutputFolder take_folder(const CommonOptions& options, const std::string& verb);
+
+/// Sets aside what an earlier run left in the folder, and says where on stderr, unless --quiet.
+void begin_output(OutputFolder& out, const CommonOptions& options, const std::vector<std::string>& kept = {});
+
+/// Says on stderr, unless --quiet, where results of an earlier run were moved to; nothing if there were none.
+void print_set_aside(const std::filesystem::path& earlier, const CommonOptions& options);
 
 /// Warnings of the mapping on stderr, unless --quiet.
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options);

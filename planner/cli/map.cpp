@@ -61,9 +61,10 @@ std::string result_text(const Case& definition, const MapResult& map) {
 
 int map(const MapOptions& options) {
   const Case definition = load_case(options.file, options.common, {"mapping"});
-  try_folder(options.common.out);
+  OutputFolder out = take_folder(options.common, "map");
   const MapResult result = map_case(definition);
   print_warnings(map_warnings(definition, result), options.common);
+  begin_output(out, options.common);
   deliver(result_json(definition, result), result_text(definition, result), options.common, &definition);
   return kDone;
 }

@@ -71,6 +71,8 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
              {"link_violation", finite(problem.reach().link_violation)},
              {"status", problem.reach().status},
              {"meaning", explain_reach(problem.reach_problem(), problem.reach())}};
+  json best{{"score", score_json(result.best.score)}, {"candidate", search.best.name}};
+  if (result.best.score.valid) best["schedule"] = "schedule.json";
   return {
       {"case", problem.definition().name},
       {"terms", problem.model(kReport).term_names()},
@@ -79,10 +81,7 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
        {{"max_shear_deg", problem.mapping().max_shear_deg},
         {"mean_shear_deg", problem.mapping().mean_shear_deg}}},
       {"baselines", {{"uniform", score_json(result.uniform.score)}, {"wave", score_json(result.wave.score)}}},
-      {"best",
-       {{"score", score_json(result.best.score)},
-        {"schedule", "schedule.json"},
-        {"candidate", search.best.name}}},
+      {"best", best},
       {"runs",
        {{"uniform", drape_json(result.uniform)},
         {"wave", drape_json(result.wave)},
@@ -120,25 +119,25 @@ std::string result_text(const DrapeProblem& problem, const PlanResult& result,
 }
 
 /// Plans one case into its folder; throws what went wrong.
-PlannedCase plan_case(Case definition, const PlanVerbOptions& options, const std::filesystem::path& folder) {
+PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFolder& out) {
   const bool talk = !options.common.quiet;
   const DrapeProblem problem(std::move(definition));
   for (const std::string& fidelity : plan_fidelities(problem.definition()))
     static_cast<void>(problem.model(fidelity));  // what cannot be built is found before anything is written
   if (talk) print_start(problem);
   print_warnings(map_warnings(problem.definition(), problem.mapping()), options.common);
-  create_directories(folder);
-  write_text(folder / "resolved.json", document_text(resolved_case(problem.definition())));
   ProgressLine line;
-  const PlanResult result =
-      plan(problem, {folder, options.resume, options.common.threads}, [&](const Progress& progress) {
-        if (talk) line(progress);
-      });
+  const PlanOptions planning{
+      options.resume, options.common.threads,
+      [&](const std::filesystem::path& earlier) { print_set_aside(earlier, options.common); }};
+  const PlanResult result = plan(problem, out, planning, [&](const Progress& progress) {
+    if (talk) line(progress);
+  });
   if (result.best.score.valid)
-    write_plan(folder, problem, result);  // no schedule for a robot from failed runs
-  json out = plan_json(problem, result);
-  write_text(folder / "result.json", document_text(out));
-  return {std::move(out), result_text(problem, result, folder), result.best.score.valid};
+    write_plan(out.path(), problem, result);  // no schedule for a robot from failed runs
+  json document = plan_json(problem, result);
+  write_text(out.path() / "result.json", document_text(document));
+  return {std::move(document), result_text(problem, result, out.path()), result.best.score.valid};
 }
 
 /// A run directory per case: --out itself for a single case, else a folder below it by the case file's name.
@@ -168,7 +167,7 @@ void refuse_shared_folders(const std::vector<std::string>& files,
 /// Plans one case and adds its result to the list: of a case that could not be planned, its name and why.
 /// A bug is thrown on.
 ExitCode plan_and_add(Case definition, const std::string& file, const PlanVerbOptions& options,
-                      const std::filesystem::path& folder, json& results) {
+                      OutputFolder& folder, json& results) {
   const std::string name = definition.name;
   try {
     PlannedCase planned = plan_case(std::move(definition), options, folder);
@@ -180,8 +179,8 @@ ExitCode plan_and_add(Case definition, const std::string& file, const PlanVerbOp
     Failure failure = failure_of(std::current_exception());
     if (failure.code == kBug) throw;
     std::error_code error;
-    if (failure.code == kNotFinished && std::filesystem::exists(folder, error))
-      failure.reason += "; what was done is kept in " + folder.string();
+    if (failure.code == kNotFinished && std::filesystem::exists(folder.path() / kEvaluations, error))
+      failure.reason += "; what was done is kept in " + folder.path().string();
     print_failure(failure, file);
     results.push_back({{"case", name}, {"status", "not finished"}, {"reason", failure.reason}});
     return failure.code;
@@ -196,11 +195,13 @@ int plan_all(const PlanVerbOptions& options) {
   for (const std::string& file : options.files)
     cases.push_back(load_case(file, options.common, {"grippers", "material"}, errors));
   if (!errors.empty()) throw InputErrors(errors);
-  for (const std::filesystem::path& folder : folders) try_folder(folder);
+  std::vector<OutputFolder> out;
+  for (const std::filesystem::path& folder : folders)
+    out.emplace_back(folder, "plan", options.resume ? kEvaluations : "");
   json results = json::array();
   int code = kDone;
   for (size_t k = 0; k < cases.size(); ++k) {
-    const ExitCode one = plan_and_add(std::move(cases[k]), options.files[k], options, folders[k], results);
+    const ExitCode one = plan_and_add(std::move(cases[k]), options.files[k], options, out[k], results);
     if (code == kDone || one == kInputWrong) code = one;
   }
   if (options.common.json)

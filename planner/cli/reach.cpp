@@ -49,11 +49,12 @@ std::string result_text(const ReachProblem& problem, const ReachResult& reach) {
 
 int reach(const ReachOptions& options) {
   const Case definition = load_case(options.file, options.common, {"grippers"});
-  try_folder(options.common.out);
+  OutputFolder out = take_folder(options.common, "reach");
   const MapResult map = map_case(definition);
   print_warnings(map_warnings(definition, map), options.common);
   const ReachProblem problem = reach_problem_of(definition, map.targets);
   const ReachResult result = solve_reach(problem, kRandomStarts, definition.optimise.seed);
+  begin_output(out, options.common);
   deliver(result_json(problem, result), result_text(problem, result), options.common, &definition);
   if (!result.converged) throw NotFinished("not converged: " + result.status);
   return kDone;

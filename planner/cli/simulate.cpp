@@ -54,6 +54,19 @@ PartOfRun part_of_run(const SimulateOptions& options, const Model& model) {
   return part;
 }
 
+/// Tries the place of --save, before the first step. @throws WrongInput if no state can, or may, be written
+/// there.
+void try_save(const SimulateOptions& options) {
+  if (options.save.empty()) return;
+  const std::filesystem::path file(options.save), folder(options.common.out);
+  try_output_file(file, "drapeplan state ", "a saved state");
+  std::error_code error;
+  const bool beside =
+      std::filesystem::equivalent(file.has_parent_path() ? file.parent_path() : ".", folder, error);
+  if (beside && (is_result_name(file.filename().string()) || file.filename() == kRunLock))
+    throw WrongInput(fmt::format("--save: {}: is the name of another file of --out", options.save));
+}
+
 /// Saves the state where --save says.
 void save(const SimulateOptions& options, const Model& model, const State& state) {
   if (!options.save.empty()) save_state(options.save, model, state);
@@ -141,7 +154,9 @@ std::string probes_text(const json& probes) {
 int simulate_free(const Case& definition, const SimulateOptions& options) {
   const Model model = model_of(definition, definition.fidelities.at(options.fidelity));
   const PartOfRun part = part_of_run(options, model);
-  try_folder(options.common.out);
+  OutputFolder out = take_folder(options.common, "simulate");
+  try_save(options);
+  begin_output(out, options.common);
   print_terms(model, options.common);
   std::vector<Snapshot> frames;
   RunRequest request;
@@ -163,7 +178,6 @@ int simulate_free(const Case& definition, const SimulateOptions& options) {
   keep_all([&] { save(options, model, run.state); },
            [&] {
              if (!options.common.out.empty()) {
-               create_directories(std::filesystem::path(options.common.out));
                write_frames(options.common.out, "ply", model.scene().mesh, frames,
                             definition.mold ? &*definition.mold : nullptr, definition.material.thickness);
              }
@@ -211,7 +225,6 @@ std::string score_line(const Drape& drape) {
 void write_drape(const std::filesystem::path& folder, const DrapeProblem& problem, const Drape& drape,
                  const Schedule& schedule, const SimulateOptions& options) {
   const Case& definition = problem.definition();
-  create_directories(folder);
   write_frames(folder, "ply", problem.model(options.fidelity).scene().mesh, drape.frames, &*definition.mold,
                definition.material.thickness);
   write_mold_vtu(folder / "mold.vtu", *definition.mold);
@@ -229,7 +242,9 @@ int simulate_drape(Case definition, const SimulateOptions& options) {
   const bool files = !options.common.out.empty();
   const Model& model = problem.model(options.fidelity);
   const PartOfRun part = part_of_run(options, model);
-  try_folder(options.common.out);
+  OutputFolder out = take_folder(options.common, "simulate");
+  try_save(options);
+  begin_output(out, options.common);
   print_terms(model, options.common);
   const Drape drape = problem.run(schedule, options.fidelity, files ? options.frames : 0,
                                   {part.from ? &*part.from : nullptr, part.pause});
@@ -248,13 +263,6 @@ int simulate_drape(Case definition, const SimulateOptions& options) {
 
 /// What the options ask of the case must be possible. @throws WrongInput with the reason.
 void check_options(const Case& definition, const SimulateOptions& options) {
-  std::error_code error;
-  if (!options.common.out.empty() &&
-      std::filesystem::exists(std::filesystem::path(options.common.out) / "evaluations.jsonl", error)) {
-    throw WrongInput(
-        fmt::format("{}: --out holds a plan, whose schedule would be overwritten; choose another folder",
-                    options.common.out));
-  }
   if (definition.fidelities.count(options.fidelity) == 0) {
     std::vector<std::string> names;
     for (const auto& entry : definition.fidelities) names.push_back(entry.first);

@@ -60,7 +60,8 @@ int stress(const StressOptions& options) {
   const std::vector<StressScene> scenes = chosen_scenes(options);
   if (scenes.empty())
     throw WrongInput("no scene has a name with such a text; run it without --only to see all");
-  try_folder(options.common.out);
+  OutputFolder out = take_folder(options.common, "stress");
+  begin_output(out, options.common);
   const std::vector<StressOutcome> outcomes = play_all(scenes, options.common);
   const nlohmann::json result = stress_json(outcomes);
   std::string text;
@@ -68,7 +69,6 @@ int stress(const StressOptions& options) {
   text += fmt::format("\n{} scenes, {} wrong\n", outcomes.size(), result["failures"].size());
   if (!options.common.out.empty()) {
     const std::filesystem::path folder(options.common.out);
-    create_directories(folder);
     write_text(folder / "stress.csv", stress_csv(outcomes));
     write_text(folder / "stress.md", stress_markdown(outcomes));
   }

@@ -184,17 +184,17 @@ void measure_noise(StudyWork& work, Study& study) {
 
 /// The search of a run directory of `plan`, which is made now if none is named; beside it, as many evenly
 /// spread schedules as are ranked.
-void trace_search(StudyWork& work, Study& study, const std::filesystem::path& folder) {
+void trace_search(StudyWork& work, Study& study, OutputFolder& plan_out) {
   const Case whole = work.subject.whole();
   const std::string fidelity = whole.fidelities.count("search") > 0 ? "search" : kReport;
   std::filesystem::path run = work.options.run;
   if (run.empty()) {
-    run = folder / "plan";
+    run = plan_out.path();
     const DrapeProblem problem(whole);
-    (void)plan(problem, {run, work.options.resume, work.options.common.threads}, {});
+    (void)plan(problem, plan_out, {work.options.resume, work.options.common.threads}, {});
   }
-  EvaluationLog log((run / "evaluations.jsonl").string(), case_hash(whole));  // throws for another case's
-  study.searches.push_back(search_trace(log.evaluations(), fidelity));
+  study.searches.push_back(
+      search_trace(read_evaluations((run / kEvaluations).string(), case_hash(whole)), fidelity));
   SearchTrace even{"evenly spread schedules", {}, {}, {}};
   double seconds = 0, best = std::numeric_limits<double>::infinity();
   const std::vector<Schedule> schedules = work.subject.schedules(work.options.schedules);
@@ -211,7 +211,7 @@ void trace_search(StudyWork& work, Study& study, const std::filesystem::path& fo
 }
 
 Study study_case(const StudySubject& subject, StudyRunner& runner, const StudyOptions& options,
-                 const std::filesystem::path& folder) {
+                 OutputFolder& plan_out) {
   StudyWork work{subject, runner, options};
   Study study;
   study.case_name = subject.base().name;
@@ -223,7 +223,7 @@ Study study_case(const StudySubject& subject, StudyRunner& runner, const StudyOp
   if (options.wants("sweep")) sweep(work, study);
   if (options.wants("noise") && study.drapes) measure_noise(work, study);
   if (options.wants("ranks") && study.drapes) rank(work, study);
-  if (options.wants("search") && study.drapes) trace_search(work, study, folder);
+  if (options.wants("search") && study.drapes) trace_search(work, study, plan_out);
   return study;
 }
 
@@ -256,20 +256,25 @@ void check_parts(const Case& definition, const StudyOptions& options) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(log, error))
     throw WrongInput(fmt::format("--run: {}: there is no such file", log));
-  const EvaluationLog known(log, case_hash(definition));  // throws for another case's
+  read_evaluations(log, case_hash(definition), {});  // throws for another case's
 }
 
 /// The whole study, once all input is known to be good.
 int study_into(const std::filesystem::path& folder, const Case& definition, const StudySubject& subject,
                const StudyOptions& options) {
-  create_directories(folder);
+  OutputFolder out(folder, "study", options.resume ? kStudyLog : "");
+  OutputFolder plan_out;
+  if (options.wants("search") && subject.drapes() && options.run.empty())
+    plan_out = OutputFolder(folder / "plan", "plan", options.resume ? kEvaluations : "");
+  if (!options.resume) begin_output(out, options.common);
   ProgressLine line;
-  StudyRunner runner(subject,
-                     {folder / "study.jsonl", options.resume, options.common.threads, options.repeats},
+  StudyRunner runner(subject, {folder / kStudyLog, options.common.threads, options.repeats},
                      [&](const std::string& what, int done, int of) {
                        if (!options.common.quiet) line(what, done, of);
                      });
-  const Study study = study_case(subject, runner, options, folder);
+  if (options.resume)
+    begin_output(out, options.common, {kStudyLog, "resolved.json"});  // its log was accepted
+  const Study study = study_case(subject, runner, options, plan_out);
   write_study(folder, study);
   CommonOptions common = options.common;
   common.out = folder.string();
@@ -291,7 +296,6 @@ int run_study(const StudyOptions& options) {
                                            ? std::filesystem::path("out") / ("study-" + definition.name)
                                            : std::filesystem::path(options.common.out);
   const StudySubject subject(options.file, overrides, at);
-  try_folder(folder);
   try {
     return study_into(folder, definition, subject, options);
   } catch (const NotFinished& error) {

@@ -1,15 +1,16 @@
 #include "planner/search/evaluation_log.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "fem/core/hash.hpp"
+#include "mapping/error.hpp"
 #include "planner/drape/result_fields.hpp"
 
 namespace drapeplan {
@@ -75,43 +76,30 @@ std::string to_line(const json& j) {
   return j.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
 }
 
-struct LogFile {
-  std::optional<std::uint64_t> case_hash;  ///< absent: no whole first line
-  std::vector<Evaluation> evaluations;
-  std::uintmax_t good_bytes = 0;  ///< up to the end of the last whole line
-  std::string text;
-};
-
 std::string header_line(std::uint64_t case_hash) {
   return to_line({{"format", kFormat}, {"case_hash", hex(case_hash)}});
 }
 
-LogFile read_log(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream buffer;
-  buffer << in.rdbuf();
-  LogFile log;
-  log.text = buffer.str();
-  const std::string& text = log.text;
-  int line_number = 0;
-  for (size_t begin = 0, end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
-    ++line_number;
-    try {
-      const json j = json::parse(text.begin() + std::ptrdiff_t(begin), text.begin() + std::ptrdiff_t(end));
-      if (line_number == 1) {
-        if (j.at("format") != kFormat) throw std::runtime_error("the format is not " + std::string(kFormat));
-        log.case_hash = from_hex(j.at("case_hash"));
-      } else {
-        log.evaluations.push_back(from_json(j));
-      }
-    } catch (const std::exception& error) {
-      if (line_number > 1 && end + 1 == text.size()) break;  // a torn last line that happens to end the file
-      throw std::runtime_error(path + ":" + std::to_string(line_number) +
-                               ": not an evaluation log: " + error.what());
-    }
-    log.good_bytes = end + 1;
-  }
-  return log;
+/// The case hash of a first line. @throws std::exception if it is none.
+std::uint64_t hash_of_header(const std::string& line) {
+  const json header = json::parse(line);
+  if (header.at("format") != kFormat)
+    throw std::invalid_argument("the format is not " + std::string(kFormat));
+  return from_hex(header.at("case_hash"));
+}
+
+void require_case(const std::string& path, std::uint64_t found, std::uint64_t wanted) {
+  if (found == wanted) return;
+  throw WrongInput(
+      fmt::format("{}: belongs to another case (hash {}, this case has {}), and is left as it is", path,
+                  hex(found), hex(wanted)));
+}
+
+/// A first line that a killed run has not finished is the begin of the line that this case would write.
+void require_begin_of_header(const std::string& path, const std::string& text,
+                             std::optional<std::uint64_t> case_hash) {
+  if (text.empty() || (case_hash && header_line(*case_hash).starts_with(text))) return;
+  throw WrongInput(path + ": is not an evaluation log, and is left as it is");
 }
 
 }  // namespace
@@ -138,31 +126,63 @@ std::uint64_t schedule_hash(const Schedule& schedule) {
   return hash.value();
 }
 
-EvaluationLog::EvaluationLog(const std::string& path, std::uint64_t case_hash) {
-  if (std::filesystem::exists(path)) read(path, case_hash);
-  const bool fresh = !std::filesystem::exists(path) || std::filesystem::file_size(path) == 0;
-  file_.open(path, std::ios::binary | std::ios::app);
-  if (fresh) file_ << header_line(case_hash) << std::flush;
-  if (!file_) throw std::runtime_error(path + ": cannot be written");
+std::uintmax_t read_evaluations(const std::string& path, std::optional<std::uint64_t> case_hash,
+                                const std::function<void(Evaluation&&)>& visit) {
+  std::error_code error;
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(path, error)) in.open(path, std::ios::binary);  // a pipe would block
+  if (!in.is_open()) throw WrongInput(path + ": cannot be read as a log of evaluations");
+  std::uintmax_t whole = 0;
+  int line_number = 0;
+  for (std::string line; std::getline(in, line);) {
+    const bool torn = in.eof();
+    ++line_number;
+    if (torn && line_number == 1) require_begin_of_header(path, line, case_hash);
+    if (torn) break;
+    const bool last = in.peek() == std::ifstream::traits_type::eof();
+    try {
+      if (line_number == 1) {
+        const std::uint64_t found = hash_of_header(line);
+        require_case(path, found, case_hash.value_or(found));
+      } else {
+        Evaluation evaluation = from_json(json::parse(line));
+        if (visit) visit(std::move(evaluation));
+      }
+    } catch (const WrongInput&) {
+      throw;
+    } catch (const std::exception& fault) {
+      if (line_number > 1 && last) break;  // a torn last line that happens to end in a line break
+      throw WrongInput(
+          fmt::format("{}:{}: is no line of an evaluation log: {}", path, line_number, fault.what()));
+    }
+    whole += line.size() + 1;
+  }
+  return whole;
 }
 
-void EvaluationLog::read(const std::string& path, std::uint64_t case_hash) {
-  LogFile log = read_log(path);
-  if (!log.case_hash && !header_line(case_hash).starts_with(log.text)) {
-    throw std::runtime_error(path + ": is not an evaluation log, and is left as it is");
-  }
-  if (log.case_hash && *log.case_hash != case_hash) {
-    throw std::runtime_error(path + ": belongs to another case (hash " + hex(*log.case_hash) +
-                             ", this case has " + hex(case_hash) + "); choose another folder or remove it");
-  }
-  for (Evaluation& evaluation : log.evaluations) remember(std::move(evaluation));
-  std::filesystem::resize_file(path, log.good_bytes);
+std::vector<Evaluation> read_evaluations(const std::string& path, std::optional<std::uint64_t> case_hash) {
+  std::vector<Evaluation> evaluations;
+  read_evaluations(path, case_hash, [&](Evaluation&& one) { evaluations.push_back(std::move(one)); });
+  return evaluations;
 }
 
-void EvaluationLog::remember(Evaluation evaluation) {
+EvaluationLog::EvaluationLog(const std::string& path, std::uint64_t case_hash) : path_(path) {
+  std::error_code error;
+  std::uintmax_t whole = 0;
+  if (std::filesystem::exists(path, error)) {
+    whole = read_evaluations(path, case_hash, [this](Evaluation&& one) { remember(one); });
+    std::filesystem::resize_file(path, whole, error);
+  }
+  if (!error) file_.open(path, std::ios::binary | std::ios::app);
+  if (whole == 0) file_ << header_line(case_hash) << std::flush;
+  if (error || !file_) throw NotFinished(path + ": cannot be written");
+}
+
+void EvaluationLog::remember(const Evaluation& evaluation) {
   known_[{evaluation.schedule_hash, evaluation.fidelity}] = evaluation.outcome;
   best_[evaluation.fidelity] = evaluation.best_so_far;
-  lines_.push_back(std::move(evaluation));
+  last_number_ = evaluation.number;
+  ++size_;
 }
 
 Outcome EvaluationLog::evaluate_once(const Schedule& schedule, const std::string& fidelity,
@@ -193,22 +213,17 @@ void EvaluationLog::write(const Schedule& schedule, const std::string& fidelity,
   const std::scoped_lock lock(mutex_);
   double best = best_.contains(fidelity) ? best_[fidelity] : kInfinity;
   if (outcome.score.valid && outcome.score.objective < best) best = outcome.score.objective;
-  const int number = lines_.empty() ? 1 : lines_.back().number + 1;
-  Evaluation evaluation{number, stage, fidelity, schedule_hash(schedule), outcome, best};
+  const Evaluation evaluation{last_number_ + 1, stage, fidelity, schedule_hash(schedule), outcome, best};
   if (file_.is_open()) {
     file_ << to_line(to_json(evaluation)) << std::flush;
-    if (!file_) throw std::runtime_error("the evaluation log cannot be written (disk full?)");
+    if (!file_) throw NotFinished(path_ + ": cannot be written (disk full?)");
   }
-  remember(std::move(evaluation));
+  remember(evaluation);
 }
 
-std::vector<Evaluation> EvaluationLog::evaluations() const {
+int EvaluationLog::size() const {
   const std::scoped_lock lock(mutex_);
-  return lines_;
-}
-
-std::vector<Evaluation> read_evaluations(const std::string& path) {
-  return read_log(path).evaluations;
+  return size_;
 }
 
 }  // namespace drapeplan

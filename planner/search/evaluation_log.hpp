@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -42,15 +43,15 @@ std::uint64_t schedule_hash(const Schedule& schedule);
 
 /// Append-only file of JSON lines. The first names the format and the case; each other one is an evaluation,
 /// flushed when written. Thread-safe. Resume = open the same file again: known (schedule, fidelity) pairs are
-/// then served from it. Of a run's summary only what the planner shows is kept (status, steps, times,
-/// energies, hash).
+/// then served from it. In memory one outcome is kept per evaluation, some hundred bytes: its score and of
+/// its run's summary only what the planner shows (status, steps, times, energies, hash).
 class EvaluationLog {
  public:
   /// In memory only.
   EvaluationLog() = default;
-  /// Opens or creates `path`. A torn last line (a run that was killed) is cut off. Throws std::runtime_error,
-  /// and leaves the file as it was, if it belongs to another case, is of another format or has a broken line
-  /// inside.
+  /// Opens or creates `path`. A torn last line (a run that was killed) is cut off.
+  /// @throws WrongInput as `read_evaluations`, and leaves the file as it was; NotFinished if it cannot be
+  /// written.
   EvaluationLog(const std::string& path, std::uint64_t case_hash);
 
   /// The outcome of this schedule at this fidelity: the known one (cached = true), or that of `run`, which is
@@ -61,24 +62,34 @@ class EvaluationLog {
   void write(const Schedule& schedule, const std::string& fidelity, const std::string& stage,
              const Outcome& outcome);
 
-  /// All lines so far, those read from the file included.
-  [[nodiscard]] std::vector<Evaluation> evaluations() const;
+  /// How many evaluations it has, those read from the file included.
+  [[nodiscard]] int size() const;
 
  private:
   using Key = std::pair<std::uint64_t, std::string>;  // schedule hash, fidelity
-  void read(const std::string& path, std::uint64_t case_hash);
-  void remember(Evaluation evaluation);
+  void remember(const Evaluation& evaluation);
 
   mutable std::mutex mutex_;
   std::condition_variable finished_;
   std::map<Key, Outcome> known_;
   std::set<Key> running_;
-  std::vector<Evaluation> lines_;
   std::map<std::string, double> best_;  // per fidelity
+  int last_number_ = 0, size_ = 0;
+  std::string path_;
   std::ofstream file_;
 };
 
-/// The evaluations of a log file, for pages; same errors as EvaluationLog except that any case is accepted.
-std::vector<Evaluation> read_evaluations(const std::string& path);
+/// Reads a log file line by line; a torn last line is left out. The file stays as it is.
+/// @param case_hash  if given, the case that the log must belong to.
+/// @param visit      called for every evaluation in the order of the file; may be empty.
+/// @return length of the file up to the end of its last whole line [bytes].
+/// @throws WrongInput if the file cannot be read, belongs to another case, is of another format or has a
+/// broken line.
+std::uintmax_t read_evaluations(const std::string& path, std::optional<std::uint64_t> case_hash,
+                                const std::function<void(Evaluation&&)>& visit);
+
+/// All evaluations of a log file, for pages; errors as above.
+std::vector<Evaluation> read_evaluations(const std::string& path,
+                                         std::optional<std::uint64_t> case_hash = {});
 
 }  // namespace drapeplan

@@ -1,12 +1,15 @@
 #include "planner/search/plan.hpp"
 
 #include <chrono>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "fem/core/hash.hpp"
 #include "planner/base/parallel.hpp"
+#include "planner/base/text.hpp"
 #include "planner/case/file.hpp"
 
 namespace drapeplan {
@@ -14,30 +17,80 @@ namespace {
 
 constexpr int kFrames = 21;  // of a reported drape, for ParaView: twenty equal parts of the sequence
 
-/// Drapes at the reporting fidelity, kept with their frames so that pictures need no second run.
+/// Drapes at the reporting fidelity with their frames, so that pictures need no second run: those of the
+/// baselines and the best so far. All others are dropped at once, whatever the number of evaluations.
 class ReportedDrapes {
  public:
-  void keep(std::uint64_t hash, Drape drape) {
+  explicit ReportedDrapes(const SequenceFrame& frame)
+      : baselines_{schedule_hash(to_schedule(frame, uniform_strokes(frame))),
+                   schedule_hash(to_schedule(frame, wave_strokes(frame)))} {}
+
+  void offer(std::uint64_t hash, Drape drape) {
     const std::lock_guard<std::mutex> lock(mutex_);
+    const bool best = drape.score.valid && drape.score.objective < best_objective_;
+    if (!best && !is_baseline(hash)) return;
+    if (best) {
+      if (!is_baseline(best_)) drapes_.erase(best_);
+      best_ = hash;
+      best_objective_ = drape.score.objective;
+    }
     drapes_[hash] = std::move(drape);
   }
-  /// The drape of a schedule; run now if it came from the log of an earlier run.
+
+  /// The drape of a schedule; run now if it is not kept, or came from the log of an earlier run.
   Drape take(const DrapeProblem& problem, const Schedule& schedule) {
     const auto known = drapes_.find(schedule_hash(schedule));
     return known != drapes_.end() ? known->second : problem.run(schedule, kReport, kFrames);
   }
 
  private:
+  [[nodiscard]] bool is_baseline(std::uint64_t hash) const {
+    return hash == baselines_[0] || hash == baselines_[1];
+  }
+
+  std::array<std::uint64_t, 2> baselines_;
+  std::uint64_t best_ = 0;
+  double best_objective_ = std::numeric_limits<double>::infinity();
   std::mutex mutex_;
   std::map<std::uint64_t, Drape> drapes_;
 };
+
+/// Takes out what people call things and where they have them from, at any depth: members that are texts.
+void erase_words(nlohmann::json& value) {
+  if (value.is_object()) {
+    for (const char* key : {"name", "source"}) {
+      if (value.contains(key) && value[key].is_string()) value.erase(key);
+    }
+  }
+  for (nlohmann::json& part : value) {
+    if (part.is_structured()) erase_words(part);
+  }
+}
+
+/// The log of a run that starts now: a known one if it is resumed; whatever else the folder holds is set
+/// aside.
+EvaluationLog start_log(const DrapeProblem& problem, OutputFolder& out, const PlanOptions& options) {
+  const std::string file = (out.path() / kEvaluations).string();
+  const std::uint64_t hash = case_hash(problem.definition());
+  std::vector<std::string> kept;
+  std::error_code error;
+  if (options.resume && std::filesystem::exists(file, error)) {
+    read_evaluations(file, hash, {});  // refused before anything is changed
+    kept = {kEvaluations, "resolved.json"};
+  }
+  const std::filesystem::path earlier = out.begin(kept);
+  if (!earlier.empty() && options.moved) options.moved(earlier);
+  write_text(out.path() / "resolved.json", resolved_case(problem.definition()).dump(2) + "\n");
+  return EvaluationLog(file, hash);
+}
 
 }  // namespace
 
 std::uint64_t case_hash(const Case& definition) {
   nlohmann::json relevant = resolved_case(definition);
-  // Words, published results and budgets change no evaluation: a search may go on with other ones.
+  // Published results and budgets change no evaluation, nor do words: a search may go on with other ones.
   for (const char* key : {"description", "references", "optimise"}) relevant.erase(key);
+  erase_words(relevant);
   Fnv1a hash;
   hash.add(std::string_view(relevant.dump()));
   return hash.value();
@@ -50,21 +103,17 @@ std::array<std::string, 3> plan_fidelities(const Case& definition) {
   return {fidelity_or_report("screen"), fidelity_or_report("search"), kReport};
 }
 
-PlanResult plan(const DrapeProblem& problem, const PlanOptions& options,
+PlanResult plan(const DrapeProblem& problem, OutputFolder& out, const PlanOptions& options,
                 const std::function<void(const Progress&)>& progress) {
   const auto clock = std::chrono::steady_clock::now();
-  std::filesystem::create_directories(options.out);
-  const std::filesystem::path file = options.out / "evaluations.jsonl";
-  if (!options.resume) std::filesystem::remove(file);
-  EvaluationLog log(file.string(), case_hash(problem.definition()));
-
-  ReportedDrapes reported;
+  EvaluationLog log = start_log(problem, out, options);
+  ReportedDrapes reported(problem.frame());
   const Evaluate evaluate = [&](const Schedule& schedule, const std::string& fidelity) {
     const bool report = fidelity == kReport;
     Drape drape = problem.run(schedule, fidelity, report ? kFrames : 0);
     Outcome outcome{
         .score = drape.score, .summary = drape.run.summary, .wall_seconds = drape.run.summary.wall_seconds};
-    if (report) reported.keep(schedule_hash(schedule), std::move(drape));
+    if (report) reported.offer(schedule_hash(schedule), std::move(drape));
     return outcome;
   };
   StagedOptions staged;

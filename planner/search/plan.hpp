@@ -4,18 +4,22 @@
 #include <array>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 
+#include "planner/base/output_folder.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/search/stages.hpp"
 
 namespace drapeplan {
 
+/// The log of a plan in its run folder.
+inline constexpr const char* kEvaluations = "evaluations.jsonl";
+
 struct PlanOptions {
-  std::filesystem::path out;  ///< run directory; made if absent
-  bool resume = false;        ///< continue from the evaluations that the run directory holds
-  int threads = 0;            ///< 0: one per core
+  bool resume = false;  ///< continue from the evaluations that the run folder holds
+  int threads = 0;      ///< 0: one per core
+  /// Called with the folder that the results of an earlier run were moved to, if there were some.
+  std::function<void(const std::filesystem::path&)> moved = {};
 };
 
 /// What a plan run found; files are written by `write_plan` (planner/report/run_files.hpp).
@@ -29,12 +33,17 @@ struct PlanResult {
 std::array<std::string, 3> plan_fidelities(const Case& definition);
 
 /// Searches for the best schedule of the problem. The result depends on the case only: not on threads, nor on
-/// what was resumed. Evaluations are appended to `out`/evaluations.jsonl as they end.
-/// @throws std::runtime_error if the log cannot be written or belongs to another case.
-PlanResult plan(const DrapeProblem& problem, const PlanOptions& options,
+/// what was resumed. Results of an earlier run in `out` are set aside, resolved.json is written, and
+/// evaluations are appended to evaluations.jsonl as they end. Memory: per evaluation its outcome, its strokes
+/// and its line of the history, a few kilobytes; whole drapes are kept of the two baselines and of the best
+/// so far only.
+/// @throws WrongInput if the log that is to be resumed belongs to another case; the folder is then as it was.
+/// @throws NotFinished if a file cannot be written.
+PlanResult plan(const DrapeProblem& problem, OutputFolder& out, const PlanOptions& options,
                 const std::function<void(const Progress&)>& progress);
 
-/// Hash of what an evaluation depends on: the resolved case without words, references and budgets.
+/// Hash of what an evaluation depends on: the resolved case without names, sources, other words, references
+/// and budgets.
 std::uint64_t case_hash(const Case& definition);
 
 }  // namespace drapeplan

@@ -20,13 +20,17 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kDifferentTime =
     0.05;  // schedules whose knots all agree within it count as the same finalist [s]
 
-/// A candidate before it has a fidelity: strokes and where they come from.
+/// A candidate before it has a fidelity: strokes and where they come from. One is kept per evaluation, so it
+/// is small: the schedule is made from the strokes where it is needed.
 struct Trial {
   std::string name;
   Strokes strokes;
-  Schedule schedule;
   double objective = kInfinity;  ///< infinite: failed
 };
+
+Trial make_trial(std::string name, Strokes strokes) {
+  return {std::move(name), std::move(strokes), kInfinity};
+}
 
 double value_of(const Outcome& outcome) {
   const bool good = outcome.score.valid && std::isfinite(outcome.score.objective);
@@ -108,10 +112,7 @@ class StagedSearch {
   void search_grippers();
   void compare_finalists();
 
-  Trial make(std::string name, Strokes strokes) const {
-    Schedule schedule = to_schedule(frame_, strokes);
-    return {std::move(name), std::move(strokes), std::move(schedule), kInfinity};
-  }
+  Schedule schedule_of(const Trial& trial) const { return to_schedule(frame_, trial.strokes); }
   std::vector<Outcome> evaluate(std::vector<Trial>& trials, const std::string& fidelity,
                                 const std::string& stage);
   void record(const Trial& trial, const std::string& fidelity, const std::string& stage);
@@ -135,7 +136,7 @@ class StagedSearch {
 std::vector<Outcome> StagedSearch::evaluate(std::vector<Trial>& trials, const std::string& fidelity,
                                             const std::string& stage) {
   std::vector<Schedule> schedules;
-  for (const Trial& trial : trials) schedules.push_back(trial.schedule);
+  for (const Trial& trial : trials) schedules.push_back(schedule_of(trial));
   std::vector<Outcome> outcomes = evaluate_(schedules, fidelity, stage);
   meter_.count(stage, fidelity, outcomes);
   for (size_t k = 0; k < trials.size(); ++k) {
@@ -152,7 +153,7 @@ void StagedSearch::record(const Trial& trial, const std::string& fidelity, const
   entry.number = int(result_.history.size()) + 1;
   entry.stage = stage;
   entry.fidelity = fidelity;
-  entry.schedule_hash = schedule_hash(trial.schedule);
+  entry.schedule_hash = schedule_hash(schedule_of(trial));
   entry.objective = trial.objective;
   entry.valid = std::isfinite(trial.objective);
   entry.best_so_far = best;
@@ -171,7 +172,8 @@ std::vector<Trial> StagedSearch::screen_waves() {
   WaveParameters flat = base;
   flat.delay = 0;
   flat.duration = frame_.options.uniform_duration;
-  std::vector<Trial> trials{make("uniform", uniform_strokes(frame_)), make("wave", wave_strokes(frame_))};
+  std::vector<Trial> trials{make_trial("uniform", uniform_strokes(frame_)),
+                            make_trial("wave", wave_strokes(frame_))};
   starts_ = {family.encode(flat), family.encode(base)};
   const Eigen::Vector2d corner =
       0.5 * frame_.rig.spacing * Eigen::Vector2d(frame_.rig.columns - 1, frame_.rig.rows - 1);
@@ -181,7 +183,7 @@ std::vector<Trial> StagedSearch::screen_waves() {
     wave.start = Eigen::Vector2d(u * corner[0], v * corner[1]);
     wave.delay *= delay_factor;
     starts_.push_back(family.encode(wave));
-    trials.push_back(make("wave " + std::to_string(trials.size() + 1), family.decode(starts_.back())));
+    trials.push_back(make_trial("wave " + std::to_string(trials.size() + 1), family.decode(starts_.back())));
   };
   for (const double v : {-1.0, 1.0}) {
     for (const double u : {-1.0, 1.0}) add(u, v, 1);
@@ -231,7 +233,8 @@ void StagedSearch::search_waves() {
   for (size_t turn = 0; turn < longest; ++turn) {
     for (const NloptRun& run : runs) {
       if (turn >= run.trials.size()) continue;
-      Trial trial = make("wave " + std::to_string(trials_.size() + 1), family.decode(run.trials[turn].x));
+      Trial trial =
+          make_trial("wave " + std::to_string(trials_.size() + 1), family.decode(run.trials[turn].x));
       trial.objective = run.trials[turn].value;
       record(trial, options_.wave_fidelity, "wave");
       trials_.push_back(std::move(trial));
@@ -263,7 +266,8 @@ void StagedSearch::search_grippers() {
     const Eigen::MatrixXd x = search.ask();
     std::vector<Trial> generation;
     for (Eigen::Index k = 0; k < x.cols(); ++k) {
-      generation.push_back(make("gripper " + std::to_string(done + int(k) + 1), family.decode(x.col(k))));
+      generation.push_back(
+          make_trial("gripper " + std::to_string(done + int(k) + 1), family.decode(x.col(k))));
     }
     evaluate(generation, options_.gripper_fidelity, "gripper");
     Eigen::VectorXd values(x.cols());
@@ -271,7 +275,7 @@ void StagedSearch::search_grippers() {
     search.tell(values);
     trials_.insert(trials_.end(), generation.begin(), generation.end());
   }
-  centre_ = {make("gripper centre", family.decode(search.mean()))};
+  centre_ = {make_trial("gripper centre", family.decode(search.mean()))};
 }
 
 bool nearly_equal(const Schedule& a, const Schedule& b) {
@@ -287,21 +291,30 @@ bool nearly_equal(const Schedule& a, const Schedule& b) {
 /// The baselines; the best few that differ; the centre of the search distribution, which no lucky value
 /// chose.
 std::vector<Trial> StagedSearch::pick_finalists() const {
-  std::vector<Trial> finalists{make("uniform", uniform_strokes(frame_)), make("wave", wave_strokes(frame_))};
-  std::vector<Trial> sorted = trials_;
-  std::stable_sort(sorted.begin(), sorted.end(), better);
-  const auto is_new = [&](const Trial& trial) {
-    return std::none_of(finalists.begin(), finalists.end(),
-                        [&](const Trial& f) { return nearly_equal(f.schedule, trial.schedule); });
+  std::vector<Trial> finalists;
+  std::vector<Schedule> schedules;
+  const auto add = [&](const Trial& trial) {
+    finalists.push_back(trial);
+    schedules.push_back(schedule_of(trial));
   };
+  const auto add_if_new = [&](const Trial& trial) {
+    const Schedule schedule = schedule_of(trial);
+    if (std::none_of(schedules.begin(), schedules.end(),
+                     [&](const Schedule& other) { return nearly_equal(other, schedule); }))
+      add(trial);
+  };
+  add(make_trial("uniform", uniform_strokes(frame_)));
+  add(make_trial("wave", wave_strokes(frame_)));
+  std::vector<const Trial*> sorted;
+  for (const Trial& trial : trials_) sorted.push_back(&trial);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Trial* a, const Trial* b) { return better(*a, *b); });
   const size_t wanted = finalists.size() + size_t(std::max(options_.optimise.finalists, 0));
-  for (const Trial& trial : sorted) {
-    if (finalists.size() >= wanted || !std::isfinite(trial.objective)) break;
-    if (is_new(trial)) finalists.push_back(trial);
+  for (const Trial* trial : sorted) {
+    if (finalists.size() >= wanted || !std::isfinite(trial->objective)) break;
+    add_if_new(*trial);
   }
-  for (const Trial& trial : centre_) {
-    if (is_new(trial)) finalists.push_back(trial);
-  }
+  for (const Trial& trial : centre_) add_if_new(trial);
   return finalists;
 }
 
@@ -309,7 +322,7 @@ void StagedSearch::compare_finalists() {
   std::vector<Trial> finalists = pick_finalists();
   const std::vector<Outcome> outcomes = evaluate(finalists, options_.report_fidelity, "report");
   for (size_t k = 0; k < finalists.size(); ++k) {
-    result_.finalists.push_back({finalists[k].name, finalists[k].schedule, outcomes[k]});
+    result_.finalists.push_back({finalists[k].name, schedule_of(finalists[k]), outcomes[k]});
   }
   result_.uniform = result_.finalists[0];
   result_.wave = result_.finalists[1];

@@ -317,7 +317,6 @@ std::string study_text(const Study& study) {
 }
 
 void write_study(const std::filesystem::path& folder, const Study& study) {
-  std::filesystem::create_directories(folder);
   write_text(folder / "study.md", study_text(study));
   if (!study.points.empty()) write_text(folder / "points.csv", points_csv(study));
   if (!study.ranks.empty()) write_text(folder / "ranks.csv", ranks_csv(study));

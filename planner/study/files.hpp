@@ -16,7 +16,7 @@ nlohmann::json study_json(const Study& study);
 std::string study_text(const Study& study);
 
 /// Writes study.md, points.csv, ranks.csv and the pictures into the folder.
-/// @throws std::runtime_error if a file cannot be written.
+/// @throws NotFinished if a file cannot be written.
 void write_study(const std::filesystem::path& folder, const Study& study);
 
 }  // namespace drapeplan

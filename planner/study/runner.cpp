@@ -1,17 +1,20 @@
 #include "planner/study/runner.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 
 #include "fem/core/hash.hpp"
+#include "mapping/error.hpp"
 #include "planner/base/parallel.hpp"
 #include "planner/base/statistics.hpp"
-#include "planner/case/file.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/search/evaluation_log.hpp"
+#include "planner/search/plan.hpp"
 
 namespace drapeplan {
 namespace {
@@ -19,6 +22,13 @@ namespace {
 using nlohmann::json;
 
 constexpr double kShort = 1;  // runs below it are repeated [s]
+
+constexpr std::string_view kHead = "{\"format\":\"drapeplan-study-1\",\"case_hash\":\"";
+
+/// The first line of a log: all runs are of this case, each with settings of its own.
+std::string head_line(const Case& definition) {
+  return fmt::format("{}{}\"}}", kHead, hex(case_hash(definition)));
+}
 
 double number(const json& value) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
@@ -68,50 +78,58 @@ StudyRunner::StudyRunner(const StudySubject& subject, StudyRunnerOptions options
                          std::function<void(const std::string&, int, int)> progress)
     : subject_(subject), options_(std::move(options)), progress_(std::move(progress)) {
   if (options_.log.empty()) return;
-  if (options_.resume) {
-    read_log();
-  } else if (std::filesystem::exists(options_.log)) {  // hours of work: never lost by a forgotten option
-    std::filesystem::rename(options_.log, options_.log.string() + ".old");
+  const std::string head = head_line(subject_.whole());
+  std::error_code error;
+  std::uintmax_t whole = 0;
+  if (std::filesystem::exists(options_.log, error)) {
+    whole = read_log(head);
+    std::filesystem::resize_file(options_.log, whole, error);  // a line that a killed study left half written
   }
-  file_.open(options_.log, options_.resume ? std::ios::app : std::ios::trunc);
-  if (!file_) throw std::runtime_error(options_.log.string() + ": cannot be written");
+  if (!error) file_.open(options_.log, std::ios::binary | std::ios::app);
+  if (whole == 0) file_ << head << '\n' << std::flush;
+  if (error || !file_) throw NotFinished(options_.log.string() + ": cannot be written");
 }
 
-/// A torn last line (of a study that was killed) is cut off.
-void StudyRunner::read_log() {
-  std::ifstream in(options_.log);
+/// @return length of the whole lines [bytes].
+std::uintmax_t StudyRunner::read_log(const std::string& head) {
+  const auto refuse = [this](int number, const std::string& fault) {
+    throw WrongInput(
+        fmt::format("{}:{}: {}; leave out --resume to begin anew", options_.log.string(), number, fault));
+  };
+  std::error_code error;
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(options_.log, error)) in.open(options_.log, std::ios::binary);
+  if (!in.is_open()) throw WrongInput(options_.log.string() + ": cannot be read as the log of a study");
+  std::uintmax_t whole = 0;
   int number = 0;
-  std::uintmax_t good = 0;  // bytes of whole lines
-  for (std::string line; std::getline(in, line);) {
-    ++number;
+  for (std::string line; std::getline(in, line); whole += line.size() + 1) {
     const bool torn = in.eof();
+    ++number;
+    if (number == 1 && !(torn ? head.starts_with(line) : head == line))
+      refuse(number, line.starts_with(kHead) ? "is the log of another case" : "is no log of a study");
     if (torn) break;
+    if (number == 1) continue;
     try {
       const json entry = json::parse(line);
       known_[entry.at("key").get<std::string>()] = from_json(entry.at("run"));
     } catch (const json::exception&) {
-      throw std::invalid_argument(options_.log.string() + ":" + std::to_string(number) +
-                                  ": is no run of a study; remove this line or leave out --resume");
+      refuse(number, "is no run of a study");
     }
-    good += line.size() + 1;
   }
-  in.close();
-  if (std::filesystem::exists(options_.log)) std::filesystem::resize_file(options_.log, good);
+  return whole;
 }
 
 /// Of the complete case and the schedule, so that no change of either is served from the log.
 std::string StudyRunner::key_of(const StudyJob& job) const {
-  Fnv1a hash;
-  std::string text;
+  std::uint64_t hash = 0;
   try {
-    json resolved = resolved_case(subject_.with(job.settings));
-    for (const char* words : {"description", "references", "optimise"}) resolved.erase(words);
-    text = resolved.dump();
+    hash = case_hash(subject_.with(job.settings));
   } catch (const std::invalid_argument& error) {
-    text = error.what();
+    Fnv1a text;
+    text.add(std::string_view(error.what()));
+    hash = text.value();
   }
-  hash.add(std::string_view(text));
-  return hex(hash.value()) + "-" + hex(schedule_hash(job.schedule));
+  return hex(hash) + "-" + hex(schedule_hash(job.schedule));
 }
 
 StudyRun StudyRunner::measured(const StudyJob& job) const {
@@ -134,7 +152,7 @@ void StudyRunner::keep(const std::string& key, const StudyRun& run) {
   if (!file_.is_open()) return;
   file_ << json{{"key", key}, {"run", to_json(run)}}.dump(-1, ' ', false, json::error_handler_t::replace)
         << '\n';
-  if (!file_.flush()) throw std::runtime_error(options_.log.string() + ": cannot be written");
+  if (!file_.flush()) throw NotFinished(options_.log.string() + ": cannot be written (disk full?)");
 }
 
 std::vector<StudyRun> StudyRunner::run(const std::string& what, const std::vector<StudyJob>& jobs) {

@@ -1,6 +1,7 @@
 // Runs the settings of a study side by side; every run is kept at once, so that a study can be resumed.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -12,6 +13,9 @@
 
 namespace drapeplan {
 
+/// The log of a study in its run folder.
+inline constexpr const char* kStudyLog = "study.jsonl";
+
 /// One run that a study needs.
 struct StudyJob {
   Settings settings;
@@ -19,18 +23,19 @@ struct StudyJob {
 };
 
 struct StudyRunnerOptions {
-  std::filesystem::path log;  ///< one line per run; empty: nothing is kept
-  bool resume = false;        ///< runs that the log holds are not done again
+  std::filesystem::path
+      log;  ///< one line per run; runs that it holds are not done again; empty: nothing is kept
   int threads = 0;
   int repeats = 3;  ///< of runs shorter than a second: the median time counts
 };
 
 class StudyRunner {
  public:
+  /// In memory and in the log one record per run is kept: its figures, and the places and shear that are
+  /// compared.
   /// @param progress  called after each run with how many are done, of how many; one call at a time.
-  /// A log that is not resumed is kept beside the new one, as *.old.
-  /// @throws std::runtime_error if the log cannot be written, std::invalid_argument if a line of it is
-  /// broken.
+  /// @throws WrongInput if the log is of another case or has a broken line, and leaves it as it is;
+  /// NotFinished if it cannot be written.
   StudyRunner(const StudySubject& subject, StudyRunnerOptions options,
               std::function<void(const std::string& what, int done, int of)> progress);
 
@@ -41,7 +46,7 @@ class StudyRunner {
  private:
   std::string key_of(const StudyJob& job) const;
   StudyRun measured(const StudyJob& job) const;
-  void read_log();
+  std::uintmax_t read_log(const std::string& head);
   void keep(const std::string& key, const StudyRun& run);
 
   const StudySubject& subject_;

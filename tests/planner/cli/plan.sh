@@ -73,12 +73,12 @@ same_file "$log" "$work/log"
 
 # The log of another case is refused and stays as it was, and so do the other files.
 cp "$work/two/result.json" "$work/result"
-expect 3 plan "$quick" --resume --out "$work/two" --set 'friction.coefficient=1.4'
+expect 2 plan "$quick" --resume --out "$work/two" --set 'friction.coefficient=1.4'
 grep -qF "evaluations.jsonl: belongs to another case" "$work/stderr" || fail "no reason: $(cat "$work/stderr")"
 same_file "$log" "$work/log"
 same_file "$work/two/result.json" "$work/result"
 # --json is one document then, too: it names the case and the reason.
-expect 3 plan "$quick" --resume --json --out "$work/two" --set 'friction.coefficient=1.4'
+expect 2 plan "$quick" --resume --json --out "$work/two" --set 'friction.coefficient=1.4'
 value "$work/stdout" /reason | grep -qF "belongs to another case" || fail "no reason in the document"
 
 # Several cases in one call: a folder each, one document. Small budgets: what counts is the number of cases.

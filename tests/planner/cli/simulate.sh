@@ -84,4 +84,8 @@ cmp -s "$work/out/schedule.json" "$work/other.json" && fail "the schedule file w
 refuse "$work/other.json" simulate "$quick" --schedule "$work/other.json"
 echo '{"format": "drapeplan-schedule 1", "blend_time": 0.1, "grippers": []}' >"$work/empty.json"
 refuse "$work/empty.json" simulate "$quick" --schedule "$work/empty.json"
+# A place that cannot be written is named before the run.
+touch "$work/file"
+expect 2 simulate "$quick" --fidelity screen --quiet --out "$work/file/below"
+grep -qF "$work/file/below" "$work/stderr" || fail "no path: $(cat "$work/stderr")"
 finish 60

@@ -10,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "mapping/error.hpp"
 #include "planner/base/parallel.hpp"
 #include "planner/search/batch_evaluate.hpp"
 
@@ -87,7 +88,8 @@ TEST_F(EvaluationLogFile, ServesAKnownScheduleAfterReopeningToTheLastBit) {
   EXPECT_EQ(o.summary.message, "end of the schedule");
   EXPECT_FALSE(log.evaluate_once(schedule_ending_at(0.02), "report", [] { return outcome_of(1); }).cached);
   log.write(schedule_ending_at(0.02), "report", "report", outcome_of(1));
-  const auto lines = log.evaluations();
+  EXPECT_EQ(log.size(), 3);
+  const auto lines = read_evaluations(path_);
   ASSERT_EQ(lines.size(), 3u);
   EXPECT_EQ(lines[2].number, 3);
   EXPECT_EQ(lines[1].best_so_far, 0.01 * third);
@@ -103,7 +105,8 @@ TEST_F(EvaluationLogFile, KeepsFailuresWithAnyReasonAndAnyNumber) {
     failed.summary.status = RunStatus::diverged;
     log.write(schedule_ending_at(0), "screen", "wave", failed);
   }
-  const auto lines = EvaluationLog(path_, 1).evaluations();
+  EXPECT_EQ(EvaluationLog(path_, 1).size(), 1);
+  const auto lines = read_evaluations(path_);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_FALSE(lines[0].outcome.score.valid);
   EXPECT_FALSE(std::isfinite(lines[0].outcome.score.objective));
@@ -123,7 +126,7 @@ TEST_F(EvaluationLogFile, CutsATornLastLineWhereverItIsTorn) {
     put(path_, whole.substr(0, length));
     {
       EvaluationLog log(path_, 1);
-      EXPECT_EQ(log.evaluations().size(), length < second ? 0u : length < whole.size() ? 1u : 2u);
+      EXPECT_EQ(log.size(), length < second ? 0 : length < whole.size() ? 1 : 2);
       log.write(schedule_ending_at(0.5), "screen", "wave", outcome_of(5));
     }
     EXPECT_EQ(read_evaluations(path_).back().outcome.score.objective, 5);
@@ -141,12 +144,16 @@ TEST_F(EvaluationLogFile, RefusesAnotherCaseABrokenLineOrAForeignFileAndLeavesIt
   const std::string foreign = "my diary", foreign_line = "{\"format\": \"other\"}\n";
   for (const std::string& text : {broken, foreign, foreign_line}) {
     put(path_, text);
-    EXPECT_THROW(EvaluationLog(path_, 1), std::runtime_error);
+    EXPECT_THROW(EvaluationLog(path_, 1), WrongInput);
+    EXPECT_THROW(read_evaluations(path_), WrongInput);
     EXPECT_EQ(text_of(path_), text);
   }
   put(path_, whole);
-  EXPECT_THROW(EvaluationLog(path_, 2), std::runtime_error);
+  EXPECT_THROW(EvaluationLog(path_, 2), WrongInput);
+  EXPECT_THROW(read_evaluations(path_, 2), WrongInput);
   EXPECT_EQ(text_of(path_), whole);
+  EXPECT_EQ(read_evaluations(path_, 1).size(), 2u);
+  EXPECT_THROW(read_evaluations("/dev/null"), WrongInput) << "a device is no log";
 }
 
 TEST(EvaluationLog, RunsAScheduleOnceThoughManyThreadsAskForIt) {
@@ -165,7 +172,18 @@ TEST(EvaluationLog, RunsAScheduleOnceThoughManyThreadsAskForIt) {
   EXPECT_EQ(runs, 4);
 }
 
-TEST(BatchEvaluate, WritesABatchInItsOrderAndTurnsExceptionsIntoFailures) {
+TEST_F(EvaluationLogFile, ReadingLeavesATornLineWhereItIs) {
+  {
+    EvaluationLog log(path_, 1);
+    for (const double z : {0.0, 0.01}) log.write(schedule_ending_at(z), "screen", "wave", outcome_of(z));
+  }
+  const std::string torn = text_of(path_).substr(0, text_of(path_).size() - 9);
+  put(path_, torn);
+  EXPECT_EQ(read_evaluations(path_, 1).size(), 1u);
+  EXPECT_EQ(text_of(path_), torn);
+}
+
+TEST_F(EvaluationLogFile, BatchEvaluateWritesABatchInItsOrderAndTurnsExceptionsIntoFailures) {
   const auto evaluate = [](const Schedule& schedule, const std::string&) {
     const double z = schedule.paths[0][1].z;
     double burn = 0;
@@ -176,7 +194,8 @@ TEST(BatchEvaluate, WritesABatchInItsOrderAndTurnsExceptionsIntoFailures) {
   std::vector<Schedule> schedules;
   for (const double z : {0.0, 1.0, 2.0, 3.0, 1.0, 4.0}) schedules.push_back(schedule_ending_at(z));
   for (const int threads : {1, 2, 4}) {
-    EvaluationLog log;
+    std::filesystem::remove(path_);
+    EvaluationLog log(path_, 1);
     const auto outcomes = make_batch_evaluate(evaluate, log, threads)(schedules, "screen", "gripper");
     ASSERT_EQ(outcomes.size(), 6u);
     EXPECT_EQ(outcomes[1].score.objective, 1);
@@ -184,7 +203,7 @@ TEST(BatchEvaluate, WritesABatchInItsOrderAndTurnsExceptionsIntoFailures) {
     EXPECT_TRUE(outcomes[4].cached);
     EXPECT_EQ(outcomes[2].score.reason, "no such mold");
     EXPECT_FALSE(outcomes[3].score.valid);
-    const auto lines = log.evaluations();
+    const auto lines = read_evaluations(path_);
     ASSERT_EQ(lines.size(), 5u);
     const int order[] = {0, 1, 2, 3, 5};
     for (size_t k = 0; k < 5; ++k) {

@@ -141,8 +141,8 @@ TEST(StagedSearch, ResultDoesNotDependOnTheNumberOfThreads) {
   EvaluationLog log_one, log_two;
   const StagedResult a = search(frame, one, log_one);
   expect_same(a, search(frame, two, log_two));
-  EXPECT_EQ(int(log_one.evaluations().size()), a.evaluations);
-  EXPECT_EQ(log_two.evaluations().size(), log_one.evaluations().size());
+  EXPECT_EQ(log_one.size(), a.evaluations);
+  EXPECT_EQ(log_two.size(), log_one.size());
 }
 
 TEST(StagedSearch, ResumedFromATornLogGivesTheSameResultWithoutRunningAgain) {
@@ -160,7 +160,7 @@ TEST(StagedSearch, ResumedFromATornLogGivesTheSameResultWithoutRunningAgain) {
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
   {
     EvaluationLog log(path, 9);
-    const int kept = int(log.evaluations().size());
+    const int kept = log.size();
     EXPECT_GT(kept, 0);
     expect_same(whole, search(frame, options, log, &resumed_runs));
     EXPECT_EQ(resumed_runs, first_runs - kept);

@@ -121,15 +121,13 @@ TEST(StudyRunner, ResumesWithoutRunningAgain) {
   const std::vector<StudyJob> jobs{{{}, {}}, {{{"fem.mass_scaling", "40"}}, {}}};
   int runs = 0;
   const auto count = [&runs](const std::string&, int, int) { ++runs; };
-  const StudyRunnerOptions options{folder / "study.jsonl", false, 1, 1};
+  const StudyRunnerOptions options{folder / kStudyLog, 1, 1};
   const std::vector<StudyRun> first = StudyRunner(subject, options, count).run("sweep", jobs);
   EXPECT_EQ(runs, 2);
   fs::resize_file(options.log, fs::file_size(options.log) - 7);  // killed while it wrote the last line
-  StudyRunnerOptions again = options;
-  again.resume = true;
-  const std::vector<StudyRun> second = StudyRunner(subject, again, count).run("sweep", jobs);
+  const std::vector<StudyRun> second = StudyRunner(subject, options, count).run("sweep", jobs);
   EXPECT_EQ(runs, 3);
-  const std::vector<StudyRun> third = StudyRunner(subject, again, count).run("sweep", jobs);
+  const std::vector<StudyRun> third = StudyRunner(subject, options, count).run("sweep", jobs);
   EXPECT_EQ(runs, 3) << "what a resumed study added must be readable";
   for (const auto& list : {second, third}) {
     EXPECT_EQ(list[0].figures, first[0].figures);
