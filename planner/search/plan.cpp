@@ -80,7 +80,10 @@ EvaluationLog start_log(const DrapeProblem& problem, OutputFolder& out, const Pl
   }
   const std::filesystem::path earlier = out.begin(kept);
   if (!earlier.empty() && options.moved) options.moved(earlier);
-  write_text(out.path() / "resolved.json", resolved_case(problem.definition()).dump(2) + "\n");
+  write_text(
+      out.path() / "resolved.json",
+      resolved_case(problem.definition()).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+          "\n");
   return EvaluationLog(file, hash);
 }
 
