@@ -261,7 +261,6 @@ int bench(const BenchOptions& options) {
                 as_it_is ? Sections{"material"} : Sections{"mapping", "grippers", "material", "mold"});
   const Schedule schedule = uniform_schedule(definition);
   OutputFolder out = take_folder(options.common, "bench");
-  begin_output(out, options.common);
   json result = {{"machine", machine_json(options)}, {"scenes", json::array()}};
   std::string text = options.steps > 0 ? "" : heading(result["machine"]);
   bool same = true;
@@ -272,6 +271,7 @@ int bench(const BenchOptions& options) {
     text += scene_line(entry);
     result["scenes"].push_back(std::move(entry));
   }
+  begin_output(out, options.common);
   if (!options.common.out.empty()) {
     const std::filesystem::path folder(options.common.out);
     write_text(folder / "bench.csv", csv(result));

@@ -4,7 +4,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "planner/base/json_text.hpp"
 #include "planner/cli/cli.hpp"
 
 namespace drapeplan {
@@ -53,7 +52,7 @@ int schema(const SchemaOptions& options) {
   const json document = case_schema();
   OutputFolder out = take_folder(options.common, "schema");
   begin_output(out, options.common);
-  deliver(document, dump_json(document, 2) + '\n', options.common);
+  deliver(document, document_text(document), options.common);
   return kDone;
 }
 

@@ -90,14 +90,17 @@ void print_warnings(const std::vector<std::string>& warnings, const CommonOption
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
 }
 
+std::string document_text(const nlohmann::json& result) {
+  return dump_json(result, kIndent) + "\n";
+}
+
 void deliver(const nlohmann::json& result, const std::string& text, const CommonOptions& options,
              const Case* resolved) {
-  const std::string document = dump_json(result, kIndent) + "\n";
+  const std::string document = document_text(result);
   if (!options.out.empty()) {
     const std::filesystem::path folder(options.out);
     write_text(folder / "result.json", document);
-    if (resolved != nullptr)
-      write_text(folder / "resolved.json", dump_json(resolved_case(*resolved), kIndent) + "\n");
+    if (resolved != nullptr) write_text(folder / "resolved.json", document_text(resolved_case(*resolved)));
   }
   if (options.json || !options.quiet) print(options.json ? document : text, !options.out.empty());
 }

@@ -91,6 +91,9 @@ void print_set_aside(const std::filesystem::path& earlier, const CommonOptions& 
 /// Warnings of the mapping on stderr, unless --quiet.
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options);
 
+/// A result as the text of a JSON document; bytes that are not UTF-8, of a file's name say, are replaced.
+std::string document_text(const nlohmann::json& result);
+
 /// Writes result.json (and resolved.json if there is a case) under --out; then the result goes to stdout as
 /// text for people, or as JSON with --json. To be called after all other files were written: a reader of
 /// stdout may be gone.

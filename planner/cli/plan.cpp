@@ -6,7 +6,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "planner/base/json_text.hpp"
 #include "planner/base/text.hpp"
 #include "planner/cli/cli.hpp"
 #include "planner/cli/streams.hpp"
@@ -137,7 +136,7 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
   if (result.best.score.valid)
     write_plan(out.path(), problem, result);  // no schedule for a robot from failed runs
   json document = plan_json(problem, result);
-  write_text(out.path() / "result.json", dump_json(document, 2) + "\n");
+  write_text(out.path() / "result.json", document_text(document));
   return {std::move(document), result_text(problem, result, out.path()), result.best.score.valid};
 }
 
@@ -206,7 +205,7 @@ int plan_all(const PlanVerbOptions& options) {
     if (code == kDone || one == kInputWrong) code = one;
   }
   if (options.common.json)
-    print(dump_json(results.size() == 1 ? results[0] : json{{"cases", results}}, 2) + "\n", true);
+    print(document_text(results.size() == 1 ? results[0] : json{{"cases", results}}), true);
   return code;
 }
 

@@ -96,4 +96,4 @@ if [ "$(id -u)" != 0 ]; then
   expect 2 "${strip[@]}" --out "$work/read-only"
   says "Permission denied"
 fi
-finish 70
+finish 69
