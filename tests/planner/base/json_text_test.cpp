@@ -1,5 +1,6 @@
 #include "planner/base/json_text.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "mapping/error.hpp"
@@ -70,7 +71,7 @@ TEST(JsonText, NumbersThatNoDoubleHoldsAreRefused) {
   expect_fault("[\n1e400]", "2:", "number overflow parsing '1e400'");
   expect_fault("[\n-1e400]", "2:", "number overflow parsing '-1e400'");
   expect_fault("[0,\n1e-400]", "2:0 /1: ", "number underflow parsing '1e-400'");
-  expect_fault("[" + std::string(400, '9') + "]", "1:", "number overflow");
+  expect_fault(fmt::format("[{:9>400}]", ""), "1:", "number overflow");
 }
 
 TEST(JsonText, KeysThatAppearTwiceAreAllNamed) {
@@ -86,7 +87,7 @@ TEST(JsonText, KeysThatAppearTwiceAreAllNamed) {
 TEST(JsonText, NestingIsLimited) {
   const auto nested = [](size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
   EXPECT_EQ(faults_of(nested(64)), "");
-  expect_fault("\n" + nested(65), "2:0 /0/0/", "nested deeper than 64 levels");
+  expect_fault(fmt::format("\n{}", nested(65)), "2:0 /0/0/", "nested deeper than 64 levels");
   expect_fault(std::string(2000000, '['), "1:0 ", "nested deeper than 64 levels");
   std::string objects;
   for (int k = 0; k < 65; ++k) objects += "{\"a\":\n";

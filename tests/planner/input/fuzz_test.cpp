@@ -47,7 +47,7 @@ std::string damaged(std::string text, std::mt19937& random) {
       default:
         text.insert(at, original.substr(random() % original.size(), random() % 40));
     }
-    if (text.empty()) text = " ";
+    if (text.empty()) text.push_back(' ');
   }
   return text;
 }
