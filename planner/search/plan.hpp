@@ -39,8 +39,8 @@ std::array<std::string, 3> plan_fidelities(const Case& definition);
 /// so far only.
 /// @throws WrongInput if the log that is to be resumed belongs to another case; the folder is then as it was.
 /// @throws NotFinished if a file cannot be written.
-PlanResult plan(const DrapeProblem& problem, OutputFolder& out, const PlanOptions& options,
-                const std::function<void(const Progress&)>& progress);
+PlanResult plan(const DrapeProblem& problem, OutputFolder& out, const PlanOptions& options = {},
+                const std::function<void(const Progress&)>& progress = {});
 
 /// Hash of what an evaluation depends on: the resolved case without names, sources, other words, references
 /// and budgets.

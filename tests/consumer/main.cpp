@@ -12,7 +12,8 @@ int main(int count, char** words) {
   if (!reading.errors.empty()) return 2;
 
   const drapeplan::DrapeProblem problem(std::move(reading.definition));
-  const drapeplan::PlanResult result = drapeplan::plan(problem, {.out = words[2]}, {});
+  drapeplan::OutputFolder out(words[2], "plan");
+  const drapeplan::PlanResult result = drapeplan::plan(problem, out);
   std::cout << "uniform " << result.uniform.score.objective << "\nwave " << result.wave.score.objective
             << "\nbest " << result.best.score.objective << '\n';
   return result.best.score.valid ? 0 : 3;
