@@ -40,13 +40,4 @@ std::string score_text(const Score& score) {
   return list;
 }
 
-std::string short_score_text(const Score& score) {
-  if (!score.valid) return score.reason;
-  std::string list;
-  for (const ScorePart& part : kScoreParts) {
-    if (part.leads || part.value == &Score::objective) append(part, score, list);
-  }
-  return list;
-}
-
 }  // namespace drapeplan

@@ -51,7 +51,7 @@ struct ScorePart {
   bool compared = false;
   /// Its error's name in a study; null: a study does not look at it.
   const char* study = nullptr;
-  /// Stands for the whole where there is room for few figures, and in a study's relative error.
+  /// Counts in the relative error of a study.
   bool leads = false;
 };
 
@@ -81,9 +81,7 @@ std::string title_of(const ScorePart& part);
 /// "3.15"; an en dash where the value is not finite.
 std::string value_text(const ScorePart& part, const Score& score);
 
-/// "largest gap 3.15 mm; r.m.s. gap 1.21 mm; ...": all parts, or the leading ones and the objective. Of a
-/// failed run the reason.
+/// "largest gap 3.15 mm; r.m.s. gap 1.21 mm; ...": all parts. Of a failed run the reason.
 std::string score_text(const Score& score);
-std::string short_score_text(const Score& score);
 
 }  // namespace drapeplan

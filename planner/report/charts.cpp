@@ -324,7 +324,7 @@ std::string schedule_picture(const Schedule& schedule, const RigOptions& rig, co
   Axis x = round_axis(0, std::max(schedule.duration(), 1e-3), kLeft, kBars);
   Svg svg(kLeft + kBars + kGap + kCell * rig.columns + 24, kTop + height + 56, title);
   svg.text({18, 26}, title, {.size = 15, .bold = true});
-  svg.text({18, 46}, "strokes of the grippers (i,j) in order of arrival; grey: before the last descent",
+  svg.text({18, 46}, "strokes of the grippers [i, j] in order of arrival; grey: before the last descent",
            {.size = 12, .colour = ink::kSoft});
   const double bottom = kTop + kPitch * double(rows.size());
   const int steps = int(std::lround((x.to - x.from) / x.step));

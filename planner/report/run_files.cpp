@@ -78,7 +78,8 @@ DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const st
   const Mesh& mesh = problem.model(fidelity).scene().mesh;
   const double thickness = problem.definition().material.thickness;
   DrapePanel panel{.title = title,
-                   .subtitle = short_score_text(drape.score),
+                   .subtitle = drape.score.valid ? fmt::format("objective {:.2f}", drape.score.objective)
+                                                 : drape.score.reason,
                    .mesh = mesh,
                    .position = drape.run.final.position,
                    .gap = drape.gap,

@@ -124,13 +124,10 @@ std::string stress_markdown(const std::vector<StressOutcome>& outcomes) {
     text += fmt::format("{} {}{}", count(outcomes, v), verdict_name(v), v == Verdict::wrong ? ".\n" : ", ");
   }
   text +=
-      "Balance: largest error of the books over the largest energy. Kinetic: largest ratio of the ply's "
-      "kinetic "
-      "to its internal energy.\nDrift: r.m.s. motion of the nodes in the last tenth of a run that ends at "
-      "rest. "
-      "Step: true over estimated stable\nstep at the end; in brackets the step at which runs become "
-      "unstable, by "
-      "bisection, over the estimate.\n";
+      "Balance: largest error of the books over the largest energy. Kinetic: largest ratio of the ply's\n"
+      "kinetic to its internal energy. Drift: r.m.s. motion of the nodes in the last tenth of a run that\n"
+      "ends at rest. Step: true over estimated stable step at the end; in brackets the step at which runs\n"
+      "become unstable, by bisection, over the estimate.\n";
   std::string group;
   for (const StressOutcome& o : outcomes) {
     if (o.group != group) {
