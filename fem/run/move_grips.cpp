@@ -1,5 +1,7 @@
 #include "fem/run/move_grips.hpp"
 
+#include <algorithm>
+
 namespace drapeplan {
 namespace {
 
@@ -30,6 +32,12 @@ void set(VectorField& field, size_t n, const Vector3d& value) {
 }
 
 }  // namespace
+
+Vector3d grip_displacement(const Grip& grip, double t) {
+  // The speed rises as 3 s^2 - 2 s^3 over the ramp; its integral is s^3 - s^4 / 2.
+  const double s = grip.ramp > 0 ? std::clamp(t / grip.ramp, 0.0, 1.0) : 1;
+  return (grip.ramp * s * s * s * (1 - 0.5 * s) + std::max(t - grip.ramp, 0.0)) * grip.velocity;
+}
 
 void move_grips(const Model& model, State& state, Workspace& work) {
   const double scaling = model.scene().options.time_scaling;

@@ -8,6 +8,9 @@
 
 namespace drapeplan {
 
+/// Displacement since the start at time `t` of the schedule's clock [m].
+Eigen::Vector3d grip_displacement(const Grip& grip, double t);
+
 /// Gives the nodes of all grips the velocities that take them to their places at the end of the step,
 /// and books the work that the grips do on the ply. After the kick of the free nodes (the nodes have no mass
 /// there), before book_work.

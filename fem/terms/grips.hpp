@@ -23,7 +23,4 @@ inline auto fields_of(const Grip& of) {
   return std::tie(nodes, velocity, ramp);
 }
 
-/// Displacement since the start at time `t` of the schedule's clock [m].
-Eigen::Vector3d grip_displacement(const Grip& grip, double t);
-
 }  // namespace drapeplan

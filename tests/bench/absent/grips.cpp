@@ -1,4 +1,4 @@
-// In place of fem/run/move_grips.cpp and fem/terms/grips.cpp.
+// In place of fem/run/move_grips.cpp.
 #include "fem/run/move_grips.hpp"
 #include "tests/bench/absent/absent.hpp"
 
