@@ -1,20 +1,9 @@
 #!/usr/bin/env bash
 # A wrong input: exit 2, every error on stderr with its path, nothing on stdout, nothing written.
-# Usage: bad_input.sh DRAPEPLAN SOURCE_DIR
+# Usage: bad_input.sh DRAPEPLAN SOURCE_DIR JSON_VALUE
 set -uo pipefail
-program=$1 source=$2
-work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
-failures=0
-fail() { echo "FAILED: $*" >&2; failures=$((failures + 1)); }
-
-# expect CODE ARGUMENTS...: runs the program, keeps its output in $work.
-expect() {
-  local code=$1
-  shift
-  "$program" "$@" >"$work/stdout" 2>"$work/stderr"
-  local got=$?
-  [ "$got" = "$code" ] || fail "exit $got instead of $code: $*: $(head -c 400 "$work/stderr")"
-}
+# shellcheck source=tests/planner/cli/kit.sh
+. "$(dirname "$0")/kit.sh"
 
 for bad in "$source"/tests/bad_cases/*.json; do
   for verb in check map reach; do
@@ -27,16 +16,15 @@ for bad in "$source"/tests/bad_cases/*.json; do
   done
 done
 
-good=$source/cases/flexdraper-quick.json
 expect 2                                             # no verb
-expect 2 simulte "$good"                             # no such verb
+expect 2 simulte "$quick"                             # no such verb
 grep -qF 'there is no verb "simulte"; did you mean "simulate"?' "$work/stderr" || fail "no nearest verb"
 expect 2 xyz                                         # nor one like it
 grep -qF 'there is no verb "xyz"; expected "plan", ' "$work/stderr" || fail "verbs are not listed"
 [ -s "$work/stdout" ] && fail "something on stdout without a verb"
 expect 2 map                                         # no case
-expect 2 map "$good" --threads 0
-expect 2 map "$good" --set ply.widht='1 mm'
+expect 2 map "$quick" --threads 0
+expect 2 map "$quick" --set ply.widht='1 mm'
 grep -qF '/ply/widht: unknown key "widht"; did you mean "width"?' "$work/stderr" || fail "--set error without path"
 expect 2 explain grippers.joint_ofset
 grep -qF 'did you mean "grippers.joint_offset"?' "$work/stderr" || fail "explain without the nearest word"
@@ -44,4 +32,4 @@ expect 2 map "$source/cases/cantilever-150.json"     # no mapping
 expect 2 reach "$source/cases/sphere-mapping.json"   # no grippers
 expect 0 --help
 expect 0 map --help
-[ $failures = 0 ]
+finish 160

@@ -3,6 +3,7 @@ program=$1 source=$2 json_value=$3
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 quick=$source/cases/flexdraper-quick.json
 failures=0 checks=0
+[ -x "$json_value" ] || { echo "FAILED: $json_value is not built: values cannot be looked up" >&2; exit 1; }
 fail() { echo "FAILED: $*" >&2; failures=$((failures + 1)); }
 
 # expect CODE ARGUMENTS...: runs the program, keeps its output in $work/stdout and $work/stderr.
