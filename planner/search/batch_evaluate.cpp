@@ -1,11 +1,11 @@
 #include "planner/search/batch_evaluate.hpp"
 
 #include <cmath>
-#include <exception>
 #include <map>
 #include <mutex>
 #include <utility>
 
+#include "mapping/error.hpp"
 #include "planner/base/parallel.hpp"
 #include "planner/drape/scoring.hpp"
 
@@ -17,17 +17,18 @@ Outcome failed(Outcome outcome, const std::string& reason) {
   return outcome;
 }
 
-Outcome run_safely(const Evaluate& evaluate, const Schedule& schedule, const std::string& fidelity) {
+/// What a schedule cannot do is a score with a reason. All else that is thrown passes: no memory, or a bug.
+Outcome scored(const Evaluate& evaluate, const Schedule& schedule, const std::string& fidelity) {
   try {
     Outcome outcome = evaluate(schedule, fidelity);
     if (outcome.score.valid && !std::isfinite(outcome.score.objective)) {
       return failed(std::move(outcome), "the objective is not finite");
     }
     return outcome;
-  } catch (const std::exception& error) {
+  } catch (const WrongInput& error) {
     return failed({}, error.what());
-  } catch (...) {
-    return failed({}, "an exception of unknown type");
+  } catch (const NotFinished& error) {
+    return failed({}, error.what());
   }
 }
 
@@ -54,7 +55,7 @@ BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int thr
     const auto one = [&](int i) {
       const auto k = size_t(i);
       if (first[k] == k) {
-        const auto run = [&] { return run_safely(evaluate, schedules[k], fidelity); };
+        const auto run = [&] { return scored(evaluate, schedules[k], fidelity); };
         outcomes[k] = log.evaluate_once(schedules[k], fidelity, run);
       }
       const std::scoped_lock lock(order);

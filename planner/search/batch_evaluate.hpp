@@ -1,5 +1,4 @@
-// From "evaluate one schedule" to "evaluate a batch": parallel, cached, logged, never throwing for a bad
-// candidate.
+// From "evaluate one schedule" to "evaluate a batch": parallel, cached, logged; a bad candidate is a score.
 #pragma once
 
 #include <functional>
@@ -10,17 +9,18 @@
 
 namespace drapeplan {
 
-/// One simulation and its score. May throw: that is a failed outcome. Safe to call concurrently.
+/// One simulation and its score. WrongInput and NotFinished are failed outcomes; whatever else it throws (no
+/// memory, a bug) ends the batch. Safe to call concurrently.
 using Evaluate = std::function<Outcome(const Schedule& schedule, const std::string& fidelity)>;
 
 /// All that an optimiser sees. Outcomes in the order of the schedules. Safe to call concurrently.
 using BatchEvaluate = std::function<std::vector<Outcome>(
     const std::vector<Schedule>& schedules, const std::string& fidelity, const std::string& stage)>;
 
-/// Wraps `evaluate`: repeated schedules are served by the log, exceptions and non-finite objectives become
-/// failed outcomes, new outcomes are written to the log. Within a batch lines are written in the order of the
-/// batch, each as soon as all before it are finished: a killed run loses at most the few that overtook.
-/// Batches of concurrent callers interleave in the order of their completion.
+/// Wraps `evaluate`: repeated schedules are served by the log, bad schedules and non-finite objectives
+/// become failed outcomes, new outcomes are written to the log. Within a batch lines are written in the order
+/// of the batch, each as soon as all before it are finished: a killed run loses at most the few that
+/// overtook. Batches of concurrent callers interleave in the order of their completion.
 /// @param log  outlives the returned function.
 BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int threads = 0);
 

@@ -199,14 +199,23 @@ Outcome EvaluationLog::evaluate_once(const Schedule& schedule, const std::string
     }
     running_.insert(key);
   }
-  const Outcome outcome = run();
-  {
-    const std::scoped_lock lock(mutex_);
-    known_[key] = outcome;
-    running_.erase(key);
+  std::optional<Outcome> outcome;
+  const auto end = [&] {
+    {
+      const std::scoped_lock lock(mutex_);
+      if (outcome) known_[key] = *outcome;
+      running_.erase(key);
+    }
+    finished_.notify_all();
+  };
+  try {
+    outcome = run();
+  } catch (...) {
+    end();  // whoever waits for it runs it himself
+    throw;
   }
-  finished_.notify_all();
-  return outcome;
+  end();
+  return *outcome;
 }
 
 void EvaluationLog::write(const Schedule& schedule, const std::string& fidelity, const std::string& stage,

@@ -55,7 +55,8 @@ class EvaluationLog {
   EvaluationLog(const std::string& path, std::uint64_t case_hash);
 
   /// The outcome of this schedule at this fidelity: the known one (cached = true), or that of `run`, which is
-  /// called once even if several threads ask for it at the same time. `run` must not throw.
+  /// called once even if several threads ask for it at the same time. What `run` throws passes; nothing is
+  /// kept then.
   Outcome evaluate_once(const Schedule& schedule, const std::string& fidelity,
                         const std::function<Outcome()>& run);
   /// Appends a line; gives it its number and best so far. Order is the caller's, see batch_evaluate.hpp.

@@ -184,12 +184,12 @@ TEST_F(EvaluationLogFile, ReadingLeavesATornLineWhereItIs) {
   EXPECT_EQ(text_of(path_), torn);
 }
 
-TEST_F(EvaluationLogFile, BatchEvaluateWritesABatchInItsOrderAndTurnsExceptionsIntoFailures) {
+TEST_F(EvaluationLogFile, BatchEvaluateWritesABatchInItsOrderAndTurnsWhatAScheduleCannotDoIntoFailures) {
   const auto evaluate = [](const Schedule& schedule, const std::string&) {
     const double z = schedule.paths[0][1].z;
     double burn = 0;
     for (int i = 0; i < int(20000 * (5 - z)); ++i) burn += std::sqrt(double(i));  // the first take longest
-    if (z == 2) throw std::runtime_error("no such mold");
+    if (z == 2) throw WrongInput("no such mold");
     return outcome_of(z == 3 ? std::nan("") : z + 0 * burn);
   };
   std::vector<Schedule> schedules;
@@ -215,6 +215,20 @@ TEST_F(EvaluationLogFile, BatchEvaluateWritesABatchInItsOrderAndTurnsExceptionsI
       EXPECT_EQ(lines[k].best_so_far, 0);
     }
   }
+}
+
+TEST_F(EvaluationLogFile, ABugInAnEvaluationPassesAndIsNoFailedSchedule) {
+  std::atomic<int> runs = 0;
+  const auto evaluate = [&runs](const Schedule& schedule, const std::string&) {
+    if (schedule.paths[0][1].z == 1 && ++runs == 1) throw std::logic_error("index out of range");
+    return outcome_of(schedule.paths[0][1].z);
+  };
+  const std::vector<Schedule> schedules{schedule_ending_at(0), schedule_ending_at(1)};
+  EvaluationLog log(path_, 1);
+  const BatchEvaluate batch = make_batch_evaluate(evaluate, log, 2);
+  EXPECT_THROW(batch(schedules, "screen", "gripper"), std::logic_error);
+  EXPECT_EQ(read_evaluations(path_).size(), 1u);
+  EXPECT_EQ(batch(schedules, "screen", "gripper")[1].score.objective, 1) << "nobody waits for it for ever";
 }
 
 TEST(ParallelFor, RunsEveryIndexOnceAndThrowsTheFirstException) {

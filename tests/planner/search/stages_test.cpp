@@ -8,7 +8,8 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <stdexcept>
+
+#include "mapping/error.hpp"
 
 namespace drapeplan {
 namespace {
@@ -64,7 +65,7 @@ Evaluate synthetic(const SequenceFrame& frame, std::atomic<int>* runs = nullptr)
     if (runs) ++*runs;
     const std::uint64_t hash = schedule_hash(schedule);
     const bool screen = fidelity == "screen";
-    if (screen && hash_noise(hash, 17) > 1 - 1.0 / 6) throw std::runtime_error("not finite at node 3");
+    if (screen && hash_noise(hash, 17) > 1 - 1.0 / 6) throw NotFinished("not finite at node 3");
     Outcome outcome;
     outcome.score.valid = true;
     outcome.score.duration = schedule.duration();
@@ -181,9 +182,7 @@ TEST(StagedSearch, SaysSoWhenNothingBeatsTheBaselines) {
 TEST(StagedSearch, EndsWithAMessageWhenEverythingFails) {
   const SequenceFrame frame = frame_of(3, 3);
   EvaluationLog log;
-  const Evaluate never = [](const Schedule&, const std::string&) -> Outcome {
-    throw std::runtime_error("no");
-  };
+  const Evaluate never = [](const Schedule&, const std::string&) -> Outcome { throw NotFinished("no"); };
   const StagedResult result = staged_search(frame, options_of(30, 30), make_batch_evaluate(never, log));
   EXPECT_FALSE(result.beats_baselines);
   EXPECT_EQ(result.failed_evaluations, result.evaluations);
