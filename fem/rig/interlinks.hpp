@@ -57,6 +57,7 @@ class LinkSystem {
 
   void couple();
   void set_directions(LinkScratch& scratch) const;
+  // Not Eigen's SimplicialLLT: it takes as long (4.2 against 4.1 us for 42 rows), but its solve allocates.
   void factorise(LinkScratch& scratch) const;
   void solve(LinkScratch& scratch) const;
   double residuals(double dt, LinkScratch& scratch) const;

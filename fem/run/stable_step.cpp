@@ -1,13 +1,18 @@
 #include "fem/run/stable_step.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Spectra/GenEigsSolver.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "mapping/error.hpp"
 
 namespace drapeplan {
 namespace {
 
-constexpr int kKrylovSize = 60;        // largest eigenvalue of a mesh's spectrum to 0.1 %
+constexpr Eigen::Index kKrylovSize = 20, kMostRestarts = 100;  // a drape takes none to three
+constexpr double kEigenvalueTolerance = 1e-4;                  // relative
+
 constexpr double kProbeLength = 1e-9;  // [m] of a node: strains far below a piece of the tables
 
 constexpr double kOffTheKink = 3e-5;          // strain, less than the look-ahead of Lookup
@@ -110,27 +115,26 @@ class Tangent {
   std::vector<double> mobility_, turning_mobility_;  ///< 1 / mass and inertia of nodes; 0 where held
 };
 
-/// Largest eigenvalue, by Arnoldi's method: friction makes the tangent unsymmetric.
-double largest_eigenvalue(Tangent tangent) {
-  Eigen::MatrixXd basis(tangent.size(), kKrylovSize);
-  Eigen::MatrixXd projected = Eigen::MatrixXd::Zero(kKrylovSize, kKrylovSize);
-  Modes now(tangent.size());
-  for (Eigen::Index k = 0; k < now.size(); ++k) now[k] = std::sin(1.0 + 12.9898 * double(k) * double(k));
-  int size = 0;
-  for (double length = now.norm(); size < kKrylovSize; ++size) {
-    basis.col(size) = now / length;
-    now = tangent(basis.col(size));
-    const auto known = basis.leftCols(size + 1);
-    const Eigen::VectorXd along = known.transpose() * now;
-    now -= known * along;
-    projected.col(size).head(size + 1) = along;
-    length = now.norm();
-    if (!(length > 1e-12 * std::abs(projected(0, 0)))) break;
-    if (size + 1 < kKrylovSize) projected(size + 1, size) = length;
+/// The tangent as Spectra asks for it.
+struct TangentOperator {
+  using Scalar = double;
+  Tangent& tangent;
+  [[nodiscard]] Eigen::Index rows() const { return tangent.size(); }
+  [[nodiscard]] Eigen::Index cols() const { return tangent.size(); }
+  void perform_op(const double* in, double* out) const {
+    Eigen::Map<Modes>(out, rows()) = tangent(Eigen::Map<const Modes>(in, rows()));
   }
-  size = std::min(size + 1, kKrylovSize);
-  const Eigen::MatrixXd square = projected.topLeftCorner(size, size);
-  return Eigen::EigenSolver<Eigen::MatrixXd>(square, false).eigenvalues().real().maxCoeff();
+};
+
+/// Largest eigenvalue, by Arnoldi's method with restarts: friction makes the tangent unsymmetric.
+double largest_eigenvalue(Tangent tangent) {
+  TangentOperator product{tangent};
+  Spectra::GenEigsSolver<TangentOperator> solver(product, 1, std::min(kKrylovSize, product.rows()));
+  solver.init();
+  solver.compute(Spectra::SortRule::LargestReal, kMostRestarts, kEigenvalueTolerance);
+  if (solver.info() != Spectra::CompInfo::Successful)
+    throw NotFinished("the largest eigenvalue of the tangent was not found");
+  return solver.eigenvalues()[0].real();
 }
 
 }  // namespace
