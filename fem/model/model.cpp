@@ -146,7 +146,7 @@ SummaryParts Model::summary_parts() const {
           .friction = scene_.friction.has_value(),
           .damping = scene_.damping.has_value(),
           .constraint = scene_.rig.has_value(),
-          .links = scene_.rig && (scene_.rig->interlinks || scene_.rig->fixed)};
+          .links = scene_.rig && (scene_.rig->interlinks.has_value() || scene_.rig->fixed)};
 }
 
 State Model::flat_state(double height) const {

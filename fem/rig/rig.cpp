@@ -80,6 +80,10 @@ std::string RigOptions::name(int gripper) const {
   return '[' + std::to_string(i) + ", " + std::to_string(j) + ']';
 }
 
+double interlink_length(const RigOptions& rig, size_t index) {
+  return rig.interlinks->lengths.empty() ? rig.spacing : rig.interlinks->lengths[index];
+}
+
 std::vector<std::array<int, 2>> interlinks(const RigOptions& rig) {
   std::vector<std::array<int, 2>> pairs;
   if (!rig.interlinks) return pairs;

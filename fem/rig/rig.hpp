@@ -32,6 +32,23 @@ inline auto fields_of(const RotationLimits& of) {
   return std::tie(about_warp, about_weft);
 }
 
+/// What joins neighbouring joints: rigid bars, unless there is play or a stiffness. The length of each goes
+/// smoothly from the spacing to its own during the closing; the stops of the play go with it.
+struct InterlinkOptions {
+  std::vector<double> lengths;      ///< in the order of interlinks() [m]; empty: all as long as the spacing
+  Eigen::Vector2d closing{0, 0};    ///< from when to when they change, schedule's clock [s]
+  Eigen::Vector2d play{0, 0};       ///< how much shorter and longer than the length the stops let it be [m]
+  std::optional<double> stiffness;  ///< of a spring in place of the bar, or of the stops [N/m]; absent: rigid
+  double damping_ratio = 1;         ///< of two bare pads on that spring
+
+  [[nodiscard]] bool has_play() const { return play.maxCoeff() > 0; }
+};
+
+inline auto fields_of(const InterlinkOptions& of) {
+  const auto& [lengths, closing, play, stiffness, damping_ratio] = of;
+  return std::tie(lengths, closing, play, stiffness, damping_ratio);
+}
+
 /// Rectangular grid of grippers, centred on the ply, numbered row by row: the rows run along the warp.
 struct RigOptions {
   int columns = 0;                                  ///< along the warp
@@ -43,7 +60,7 @@ struct RigOptions {
   double tilt_limit = 60 * std::numbers::pi / 180;  ///< largest angle between pad normal and vertical [rad]
   std::optional<RotationLimits> rotation_limits;    ///< beside the tilt limit
   Driven driven = Driven::z;
-  bool interlinks = true;                   ///< rigid bars between neighbouring joints
+  std::optional<InterlinkOptions> interlinks = InterlinkOptions();  ///< between neighbouring joints
   std::optional<std::array<int, 2>> fixed;  ///< gripper [i, j] whose joint is fixed in-plane
   double actuator_stiffness = 1e4;          ///< [N/m]
   double actuator_force_limit = 50;         ///< [N]
@@ -93,5 +110,8 @@ double reach_of_pads(const RigOptions& rig, const std::vector<Eigen::Vector2d>& 
 /// Pairs of neighbouring grippers (indices), each joined by an interlink; warp direction first, in fixed
 /// order.
 std::vector<std::array<int, 2>> interlinks(const RigOptions& rig);
+
+/// Length of the interlink of that index once they are closed [m]; needs interlinks.
+double interlink_length(const RigOptions& rig, size_t index);
 
 }  // namespace drapeplan

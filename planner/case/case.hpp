@@ -51,6 +51,18 @@ struct OptimiseOptions {
   unsigned seed = 1;
 };
 
+/// How long interlinks are once they are closed.
+struct InterlinkLength {
+  enum class Source {
+    spacing,  ///< as in the flat start
+    mapped,   ///< as the distance of their joints with both pads on their targets
+    given,    ///< `same` for all, or each its own
+  };
+  Source source = Source::spacing;
+  double same = 0;                              ///< [m]; 0: the lists
+  std::vector<std::vector<double>> warp, weft;  ///< [row][column] of the interlinks in each direction [m]
+};
+
 /// Edge of the ply that is clamped (strips, test specimens).
 enum class Edge { left, right, bottom, top };  ///< smallest u, largest u, smallest v, largest v
 
@@ -97,9 +109,11 @@ struct Case {
   std::optional<double> friction;  ///< Coulomb coefficient between ply and mold
   std::optional<MappingOptions> mapping;
   std::optional<RigOptions> grippers;
-  std::string grippers_source;    ///< where their figures come from, in words
-  std::optional<double> gravity;  ///< [m/s^2]
-  std::optional<double> damping;  ///< mass-proportional rate alpha of the unscaled ply [1/s]
+  InterlinkLength interlink_length;  ///< a mapped one becomes `grippers.interlinks.lengths` with the mapping
+  Eigen::Vector2d interlink_closing{0, 1};  ///< from when to when they change, shares of the preshape
+  std::string grippers_source;              ///< where their figures come from, in words
+  std::optional<double> gravity;            ///< [m/s^2]
+  std::optional<double> damping;            ///< mass-proportional rate alpha of the unscaled ply [1/s]
   std::optional<RestCriterion> rest;
   std::vector<Edge> clamped;
   std::vector<GripOptions> grips;

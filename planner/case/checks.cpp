@@ -1,5 +1,7 @@
 #include "planner/case/checks.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -99,6 +101,25 @@ void check_rotation_limits(const RigOptions& rig, FieldReader& reader) {
   check("about_weft", rig.rotation_limits->about_weft);
 }
 
+void check_interlinks(const CaseFields& fields, FieldReader& reader) {
+  const std::string pointer = "/grippers/interlinks";
+  const RigOptions& rig = *fields.definition.grippers;
+  if (!rig.interlinks || !reader.good(pointer)) return;
+  const Eigen::Vector2d& closing = fields.definition.interlink_closing;
+  if (!(closing[0] < closing[1])) reader.fail(pointer + "/closing", "expected the earlier share first");
+  const InterlinkLength& length = fields.definition.interlink_length;
+  if (length.source != InterlinkLength::Source::given || length.same > 0) return;
+  const auto check = [&](const auto& rows, int count, int of_row, const char* k) {
+    const bool whole = int(rows.size()) == count &&
+                       std::all_of(rows.begin(), rows.end(),
+                                   [of_row](const auto& row) { return int(row.size()) == of_row; });
+    if (!whole)
+      reader.fail(pointer + "/length/" + k, fmt::format("expected {} rows of {} lengths", count, of_row));
+  };
+  check(length.warp, rig.rows, rig.columns - 1, "0");
+  check(length.weft, rig.rows - 1, rig.columns, "1");
+}
+
 void check_grippers(const CaseFields& fields, FieldReader& reader) {
   if (!fields.definition.grippers || !reader.good("/grippers")) return;
   const RigOptions& rig = *fields.definition.grippers;
@@ -113,6 +134,7 @@ void check_grippers(const CaseFields& fields, FieldReader& reader) {
                                          format_quantity(2 * rig.pad_radius, Dimension::length));
   }
   check_rotation_limits(rig, reader);
+  check_interlinks(fields, reader);
   if (rig.driven == Driven::xyz) {
     if (rig.interlinks)
       reader.fail("/grippers/driven",

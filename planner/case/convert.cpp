@@ -84,6 +84,16 @@ MaterialFields material_fields(const Fabric& fabric, const MaterialNotes& notes)
   return m;
 }
 
+/// In the order of interlinks().
+std::vector<double> given_lengths(const RigOptions& rig, const InterlinkLength& length) {
+  if (length.same > 0) return std::vector<double>(interlinks(rig).size(), length.same);
+  std::vector<double> lengths;
+  for (const auto* rows : {&length.warp, &length.weft}) {
+    for (const std::vector<double>& row : *rows) lengths.insert(lengths.end(), row.begin(), row.end());
+  }
+  return lengths;
+}
+
 Mold::Shape shape_of(const MoldFields& m) {
   switch (m.shape) {
     case 0:
@@ -144,6 +154,12 @@ void complete_case(CaseFields& fields) {
   if (const auto& m = fields.material) {
     c.material = fabric_of(*m);
     c.material_notes = {m->name, m->source, m->tension.source, m->compression.source, m->shear.source};
+  }
+  if (c.grippers && c.grippers->interlinks) {
+    InterlinkOptions& links = *c.grippers->interlinks;
+    links.closing = c.schedule.preshape_duration * c.interlink_closing;
+    if (c.interlink_length.source == InterlinkLength::Source::given)
+      links.lengths = given_lengths(*c.grippers, c.interlink_length);
   }
   if (fields.damping) c.damping = alpha_of(*fields.damping, fields.material);
   if (fields.mold) c.mold.emplace(shape_of(*fields.mold), fields.mold->extent);

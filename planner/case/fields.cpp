@@ -55,7 +55,29 @@ void visit_mapping(FieldVisitor& v, MappingOptions& m) {
   v.field({"cell_size", &m.cell_size, "Largest edge of a net cell", Dimension::length, from(1e-4, 1)});
 }
 
-void visit_grippers(FieldVisitor& v, RigOptions& g) {
+void visit_interlinks(FieldVisitor& v, InterlinkOptions& links, Case& c) {
+  InterlinkLength& length = c.interlink_length;
+  v.field(
+      {"length",
+       WordOrRows{choice(length.source, {"spacing", "mapped"}), &length.same, {&length.warp, &length.weft}},
+       "Once they are closed: as the `spacing`; `mapped`: each as long as the distance of its joints with "
+       "both pads on their targets; one length; or two lists of rows, of those along the warp (a row of "
+       "columns - 1 for each row of grippers) and along the weft (a row of columns for each gap between "
+       "rows)",
+       Dimension::length, positive(kLargestLength)});
+  v.field({"closing", &c.interlink_closing,
+           "Shares of the preshape between which they go from the spacing to their length", Dimension::none,
+           from(0, 1)});
+  v.field({"play", &links.play,
+           "[shorter, longer]: stops so far from the length, free between them (telescopic)",
+           Dimension::length, from(0, 1)});
+  v.field({"stiffness", &links.stiffness, "Of a spring in place of the rigid bar, or of the stops",
+           Dimension::line_stiffness, from(0), false, "absent: rigid"});
+  v.field({"damping_ratio", &links.damping_ratio, "Of two bare pads on that spring; 1: they do not ring",
+           Dimension::none, from(0, 1e3)});
+}
+
+void visit_grippers(FieldVisitor& v, RigOptions& g, Case& c) {
   v.field({"columns", &g.columns, "Grippers along the warp", Dimension::none, from(1, 100), true});
   v.field({"rows", &g.rows, "Grippers along the weft", Dimension::none, from(1, 100), true});
   v.field({"spacing", &g.spacing, "Between neighbouring joints; the grid is centred on the ply",
@@ -86,7 +108,10 @@ void visit_grippers(FieldVisitor& v, RigOptions& g) {
       });
   v.field({"driven", choice(g.driven, {"z", "xyz"}),
            "Directions in which actuators drive the joints; `xyz` without interlinks and fixed joint"});
-  v.field({"interlinks", &g.interlinks, "Rigid bars between neighbouring joints"});
+  Section links{"interlinks", "What joins neighbouring joints; `true`: rigid bars as long as the spacing"};
+  links.flag = true;
+  optional_section(v, links, g.interlinks, InterlinkOptions(),
+                   [&](InterlinkOptions& options) { visit_interlinks(v, options, c); });
   v.field(
       {"fixed", &g.fixed, "Gripper [i, j] whose joint is fixed in-plane; i counts along the warp, from 1"});
   v.field({"actuator_stiffness", &g.actuator_stiffness,
@@ -265,7 +290,7 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
                    c.mapping, mapping, [&v](MappingOptions& options) { visit_mapping(v, options); });
   optional_section(v, {"grippers", "The gripper grid", false, {"mold", "mapping", "material"}}, c.grippers,
                    RigOptions(), [&v, &c](RigOptions& rig) {
-                     visit_grippers(v, rig);
+                     visit_grippers(v, rig, c);
                      v.field({"source", &c.grippers_source, "Where the figures come from"});
                    });
   v.field({"gravity",

@@ -108,6 +108,11 @@ struct TypeSchema {
     return {{"type", "array"}, {"items", {{"enum", target.words}}}, {"minItems", 1}, {"uniqueItems", true}};
   }
   json operator()(const Table& table) const { return table_schema(table); }
+  json operator()(const WordOrRows& target) const {
+    const json number = number_schema(field);
+    const json rows = {{"type", "array"}, {"items", {{"type", "array"}, {"items", number}}}};
+    return {{"anyOf", {{{"enum", target.word.words}}, number, fixed_list(rows, 2)}}};
+  }
 };
 
 class SchemaWriter : public FieldVisitor {
@@ -138,6 +143,10 @@ class SchemaWriter : public FieldVisitor {
     schema["description"] = section.doc;
     if (!section.required) {
       schema["x-default"] = section.always ? "the defaults of its fields" : "absent: so is its physics";
+    }
+    if (section.flag) {
+      schema["type"] = {"object", "boolean"};
+      schema["x-default"] = present;
     }
     const auto& files = keys_that_may_name_files();
     if (frames_.empty() && std::find(files.begin(), files.end(), section.name) != files.end()) {

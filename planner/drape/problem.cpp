@@ -57,6 +57,22 @@ Mesh mesh_of(const Case& definition, double mesh_size) {
   return rectangle_mesh(definition.ply.width, definition.ply.height, mesh_size, u, v);
 }
 
+/// Interlinks that are as long as the distance of their joints with both pads on their targets get that
+/// length, unless they have it.
+void set_mapped_interlinks(const Case& definition, const std::vector<Eigen::Vector3d>& targets,
+                           RigOptions& rig) {
+  const std::vector<Eigen::Vector3d> joints = touching_joints(definition, targets);
+  rig.interlinks->lengths.clear();
+  for (const auto& [i, j] : interlinks(rig))
+    rig.interlinks->lengths.push_back((joints[size_t(i)] - joints[size_t(j)]).norm());
+}
+
+bool waits_for_mapping(const Case& definition) {
+  return definition.grippers && definition.grippers->interlinks &&
+         definition.interlink_length.source == InterlinkLength::Source::mapped &&
+         definition.grippers->interlinks->lengths.empty();
+}
+
 /// Holds all nodes of the mesh's edge on the given piece.
 Grip grip_of(const GripOptions& options, const Mesh& mesh) {
   Grip grip{options.name, {}, options.velocity, options.ramp};
@@ -87,6 +103,8 @@ Scene scene_of(const Case& definition, const FemOptions& options) {
   scene.mold = definition.mold;
   scene.friction = definition.friction;
   scene.rig = definition.grippers;
+  if (waits_for_mapping(definition))
+    set_mapped_interlinks(definition, map_case(definition).targets, *scene.rig);
   for (const GripOptions& grip : definition.grips) scene.grips.push_back(grip_of(grip, scene.mesh));
   const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
   for (int n = 0; n < scene.mesh.node_count(); ++n) {
@@ -113,6 +131,7 @@ Model model_of(const Case& definition, const FemOptions& options) {
 ReachProblem reach_problem_of(const Case& definition, const std::vector<Eigen::Vector3d>& targets) {
   const RigOptions& rig = *definition.grippers;
   ReachProblem problem{rig, *definition.mold, targets, definition.ply.position};
+  if (waits_for_mapping(definition)) set_mapped_interlinks(definition, targets, problem.rig);
   // Joints stand off from the ply's mid-surface, which lies half a ply above the mold.
   problem.ply_thickness = 0.5 * definition.material.thickness;
   if (rig.fixed) {
@@ -126,6 +145,7 @@ DrapeProblem::DrapeProblem(Case definition)
       map_(map_case(case_)),
       reach_problem_(reach_problem_of(case_, map_.targets)),
       reach_(std::make_unique<Lazy<ReachResult>>()) {
+  case_.grippers = reach_problem_.rig;  // with mapped interlinks
   for (const auto& entry : case_.fidelities) models_[entry.first] = std::make_unique<Lazy<Model>>();
   const bool reachable = case_.schedule.aim == Aim::reachable;
   if (reachable && !reach().converged) {

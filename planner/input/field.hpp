@@ -49,12 +49,19 @@ struct Table {
   Dimension abscissa = Dimension::strain;
 };
 
+/// A word, one number for all, or two lists of rows of numbers.
+struct WordOrRows {
+  Choice word;  ///< index words.size(): none of them
+  double* same = nullptr;
+  std::array<std::vector<std::vector<double>>*, 2> rows{};
+};
+
 /// Points in order, three at least: corners of a polygon.
 using PointList = std::vector<Eigen::Vector2d>;
 
 using Target = std::variant<double*, std::optional<double>*, int*, unsigned*, bool*, std::string*,
                             Eigen::Vector2d*, Eigen::Vector3d*, std::optional<std::array<int, 2>>*, Extent*,
-                            PointList*, Choice, ChoiceList, Table>;
+                            PointList*, Choice, ChoiceList, Table, WordOrRows>;
 
 struct Field {
   std::string name;
@@ -73,6 +80,7 @@ struct Section {
   bool required = false;
   std::vector<std::string> needs = {};
   bool always = false;  ///< absent means that the defaults hold, not that the physics is absent
+  bool flag = false;    ///< `true` may stand for its defaults, `false` for its absence; not stated: `present`
 };
 
 /// A list of objects.

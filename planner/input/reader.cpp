@@ -105,10 +105,11 @@ void FieldReader::field(const Field& field) {
   if (selector && !good) frames_.back().failed_choices.insert(field.name);
 }
 
-bool FieldReader::section(const Section& section, bool, const std::function<void()>& visit) {
+bool FieldReader::section(const Section& section, bool present, const std::function<void()>& visit) {
   const json* value = find(section.name, section.required, section.doc);
-  if (value == nullptr) return false;
+  if (value == nullptr) return section.flag && present;
   check_needs(section.name, section.needs);
+  if (section.flag && value->is_boolean()) return value->get<bool>();
   visit_object(*value, frames_.back().pointer + pointer_token(section.name), visit);
   return true;
 }

@@ -156,6 +156,50 @@ struct ValueReader {
     return good;
   }
 
+  /// Two lists of rows.
+  bool rows(const json& value, const WordOrRows& target) const {
+    bool good = true;
+    for (size_t k = 0; k < 2; ++k) {
+      const ValueReader list = at(k);
+      if (!value[k].is_array()) {
+        good = list.fail("expected a list of rows");
+        continue;
+      }
+      std::vector<std::vector<double>> read(value[k].size());
+      for (size_t row = 0; row < read.size(); ++row) {
+        if (!value[k][row].is_array()) {
+          good = list.at(row).fail("expected a row of quantities");
+          continue;
+        }
+        read[row].resize(value[k][row].size());
+        for (size_t n = 0; n < read[row].size(); ++n)
+          good = list.at(row).at(n).number(value[k][row][n], read[row][n]) && good;
+      }
+      *target.rows[k] = std::move(read);
+    }
+    return good;
+  }
+
+  bool word_or_rows(const json& value, const WordOrRows& target) const {
+    const DimensionWords& words = words_of(field.dimension);
+    if (value.is_array() && value.size() == 2) {
+      target.word.set(int(target.word.words.size()));
+      return rows(value, target);
+    }
+    if (!value.is_string())
+      return fail("expected " + alternatives_text(target.word.words) + ", " + words.name +
+                  " as text, e.g. \"" + words.example + "\", or two lists of rows of them");
+    const auto& text = value.get_ref<const std::string&>();
+    if (!text.empty() && (std::isalpha(static_cast<unsigned char>(text.front())) != 0)) {
+      int index = 0;
+      if (!word(value, target.word.words, index)) return false;
+      target.word.set(index);
+      return true;
+    }
+    target.word.set(int(target.word.words.size()));
+    return number(value, *target.same);
+  }
+
   bool table(const json& value, const Table& target) const;
 };
 
@@ -291,6 +335,7 @@ bool read_value(const json& value, const Field& field, const ValueFault& fault) 
       },
       [&](const ChoiceList& target) { return reader.words(value, target); },
       [&](const Table& target) { return reader.table(value, target); },
+      [&](const WordOrRows& target) { return reader.word_or_rows(value, target); },
   };
   return std::visit(read, field.target);
 }
@@ -327,6 +372,18 @@ json write_value(const Field& field) {
         return list.empty() ? json() : list;
       },
       [](const Table& target) { return table_rows(target); },
+      [&](const WordOrRows& target) {
+        const auto index = size_t(target.word.get());
+        if (index < target.word.words.size()) return json(target.word.words[index]);
+        if (*target.same > 0) return json(quantity(*target.same, field.dimension));
+        json both = json::array();
+        for (const auto* rows : target.rows) {
+          json list = json::array();
+          for (const std::vector<double>& row : *rows) list.push_back(lengths(row));
+          both.push_back(std::move(list));
+        }
+        return both;
+      },
   };
   return std::visit(write, field.target);
 }

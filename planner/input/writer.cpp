@@ -28,6 +28,7 @@ void FieldWriter::field(const Field& field) {
 
 bool FieldWriter::section(const Section& section, bool present, const std::function<void()>& visit) {
   if (present && useful(section.needs)) stack_.back()[section.name] = object(visit);
+  if (!present && section.flag) stack_.back()[section.name] = false;
   return present;
 }
 

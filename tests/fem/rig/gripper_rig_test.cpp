@@ -144,7 +144,7 @@ TEST(GripperRig, StopsAHitWithoutReboundAndBooksWhatItTook) {
 TEST(GripperRig, FollowsAStepOfItsCommandInEachDrivenDirectionAsTheClosedFormSays) {
   Bench bench = one_gripper();
   bench.options.driven = Driven::xyz;
-  bench.options.interlinks = false;
+  bench.options.interlinks.reset();
   bench.options.actuator_stiffness = 1000;
   bench.options.joint_offset = 0;
   const double frequency = std::sqrt(bench.options.actuator_stiffness / bench.options.pad_mass);
@@ -172,7 +172,7 @@ TEST(GripperRig, FollowsAStepOfItsCommandInEachDrivenDirectionAsTheClosedFormSay
 TEST(GripperRig, LimitsTheForceOfEachDirection) {
   Bench bench = one_gripper();
   bench.options.driven = Driven::xyz;
-  bench.options.interlinks = false;
+  bench.options.interlinks.reset();
   bench.options.actuator_stiffness = 1e4;
   bench.schedule = {.paths = {{{0, 1.0}}}, .blend_time = 0, .plane_paths = {{{0, {-1, 1e-3}}}}};
   bench.build();

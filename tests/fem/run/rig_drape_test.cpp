@@ -26,7 +26,7 @@ Vector3d normal_of(const Snapshot& frame, size_t pad, const RigOptions& rig) {
 
 TEST(RigDrape, KeepsPadsWithinTheirTiltLimitWhereActuatorsPressThemOntoAMoldSteeperThanIt) {
   Scene scene = corner_drape();
-  scene.rig->interlinks = false;
+  scene.rig->interlinks.reset();
   scene.rig->tilt_limit = 12 * kDegree;
   const Schedule schedule = test::drop(scene, {.depth = 0.02});  // 20 mm into the mold: full force
   double largest = 0;
@@ -67,7 +67,7 @@ TEST(RigDrape, MovesJointsInPlaneWhereTheScheduleSaysSo) {
   Scene scene = corner_drape();
   scene.mold.reset();
   scene.friction.reset();
-  scene.rig->interlinks = false;
+  scene.rig->interlinks.reset();
   scene.rig->driven = Driven::xyz;
   Schedule schedule;
   schedule.blend_time = 0.1;
