@@ -334,7 +334,8 @@ void GripperRig::book_pad(State& state, size_t g, double alpha, const TiedFields
 void GripperRig::kick(State& state, const RigDrive& drive, double alpha, const TiedFields& tied,
                       RigScratch& s) const {
   free_velocities(state, drive, alpha, tied, s);
-  const LinkSystem::Outcome links = links_.meet(state.dt, s.links);
+  const LinkSystem::Outcome links = links_.meet(state.dt, drive.time_scaling * state.time,
+                                                drive.time_scaling * (state.time + state.dt), s.links);
   state.record.link_error = std::max(state.record.link_error, links.error);
   s.converged = s.converged && links.converged;
   for (size_t g = 0; g < pads_.size(); ++g) book_pad(state, g, alpha, tied, s);

@@ -12,53 +12,20 @@
 #include "fem/run/simulate.hpp"
 #include "fem/run/workspace.hpp"
 #include "mapping/polygon.hpp"
+#include "tests/fem/rig/bench.hpp"
 #include "tests/fem/run/scenes.hpp"
 
 namespace drapeplan {
 namespace {
 
 using Eigen::Vector3d;
+using test::RigBench;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// A rig without a ply: one node of no mass under each pad. Forces go to the pads' centres.
-struct Bench {
-  RigOptions options;
-  Schedule schedule;
-  std::optional<GripperRig> rig;
-  State state;
-  RigScratch scratch;
-  VectorField force, moment, mean_v, mean_w;
-  double dt = 1e-5;  // [s]
-
-  void build() {
-    std::vector<Eigen::Vector2d> nodes;
-    for (int g = 0; g < options.count(); ++g) nodes.push_back(options.place(g));
-    const std::vector<double> none(nodes.size(), 0.0);
-    rig.emplace(options, nodes, none, none, nodes, 0.0);
-    const int count = options.count();
-    state = {};
-    state.position = state.velocity = state.director = state.director_rate = VectorField(count);
-    rig->place(state, 0);
-    scratch = rig->scratch();
-    force = moment = mean_v = mean_w = VectorField(count);
-    rig->drift(state);  // with a step of 0, nodes take their places
-    if (!schedule.paths.empty()) return;
-    schedule.paths.assign(size_t(count), {{0, options.joint_offset}});
-    schedule.blend_time = 0.1;
-  }
-  void step() {
-    state.dt = state.dt_before = dt;
-    rig->let_go(state, {&schedule, 1});
-    rig->kick(state, {&schedule, 1}, 0, {force, moment, mean_v, mean_w}, scratch);
-    rig->drift(state);
-    state.time = double(++state.step) * dt;
-  }
-};
-
 /// One gripper, its actuator without stiffness unless it is set.
-Bench one_gripper() {
-  Bench bench;
+RigBench one_gripper() {
+  RigBench bench;
   bench.options.columns = bench.options.rows = 1;
   bench.options.spacing = 0.1;
   bench.options.actuator_stiffness = 0;
@@ -79,7 +46,7 @@ Eigen::Vector2d rotations(const PadState& pad) {
 // rim.
 TEST(GripperRig, HoldsItsTiltLimitAgainstTheFullForceAtTheRimWithinATenthOfADegree) {
   for (const double azimuth : {0.0, 2.0, -1.0}) {
-    Bench bench = one_gripper();
+    RigBench bench = one_gripper();
     bench.options.tilt_limit = 30 * kDegree;
     bench.build();
     const double moment = bench.options.actuator_force_limit * bench.options.pad_radius;
@@ -104,7 +71,7 @@ TEST(GripperRig, HoldsAllFourRotationLimitsWithTheStatedSigns) {
   };
   for (const Side& side :
        {Side{{1, 0, 0}, 0, 20}, Side{{-1, 0, 0}, 0, -10}, Side{{0, 1, 0}, 1, 15}, Side{{0, -1, 0}, 1, -5}}) {
-    Bench bench = one_gripper();
+    RigBench bench = one_gripper();
     bench.options.rotation_limits =
         RotationLimits{{-10 * kDegree, 20 * kDegree}, {-5 * kDegree, 15 * kDegree}};
     bench.build();
@@ -123,7 +90,7 @@ TEST(GripperRig, HoldsAllFourRotationLimitsWithTheStatedSigns) {
 
 // A stop that never pulls back takes all of a hit, and gives none back.
 TEST(GripperRig, StopsAHitWithoutReboundAndBooksWhatItTook) {
-  Bench bench = one_gripper();
+  RigBench bench = one_gripper();
   bench.options.tilt_limit = 20 * kDegree;
   bench.build();
   bench.state.pads[0].angular_velocity = {5, 0, 0};
@@ -142,7 +109,7 @@ TEST(GripperRig, StopsAHitWithoutReboundAndBooksWhatItTook) {
 
 // Critically damped: x = 1 - (1 + w t) exp(-w t) for a step of 1.
 TEST(GripperRig, FollowsAStepOfItsCommandInEachDrivenDirectionAsTheClosedFormSays) {
-  Bench bench = one_gripper();
+  RigBench bench = one_gripper();
   bench.options.driven = Driven::xyz;
   bench.options.interlinks.reset();
   bench.options.actuator_stiffness = 1000;
@@ -170,7 +137,7 @@ TEST(GripperRig, FollowsAStepOfItsCommandInEachDrivenDirectionAsTheClosedFormSay
 }
 
 TEST(GripperRig, LimitsTheForceOfEachDirection) {
-  Bench bench = one_gripper();
+  RigBench bench = one_gripper();
   bench.options.driven = Driven::xyz;
   bench.options.interlinks.reset();
   bench.options.actuator_stiffness = 1e4;
@@ -181,7 +148,7 @@ TEST(GripperRig, LimitsTheForceOfEachDirection) {
 }
 
 /// Two grippers at one height, the first one fixed; the second swings on its interlink under a field along x.
-struct Pendulum : Bench {
+struct Pendulum : RigBench {
   static constexpr double kField = 9.81;  // [m/s^2]
   explicit Pendulum(double angle) {
     options.columns = 2;
