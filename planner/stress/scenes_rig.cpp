@@ -52,6 +52,12 @@ void add_cases(Scenes& scenes) {
          "/grippers/actuator_force_limit");
   refuse("interlinks", "pads that overlap in a case", "grippers.pad_radius=\"60 mm\"", "/grippers/spacing");
   refuse("interlinks", "grippers off the ply in a case", "grippers.spacing=\"400 mm\"", "/grippers/spacing");
+  refuse("interlinks", "a table of lengths of another grid",
+         "grippers.interlinks={\"length\":[[[\"100 mm\"]],[]]}", "/grippers/interlinks/length/0");
+  refuse("interlinks", "a stiffness below 0", "grippers.interlinks={\"stiffness\":\"-1 N/m\"}",
+         "/grippers/interlinks/stiffness");
+  refuse("interlinks", "a closing that ends before it begins", "grippers.interlinks={\"closing\":[1,0]}",
+         "/grippers/interlinks/closing");
   refuse("interlinks", "a spacing of 0 in a case", "grippers.spacing=\"0 mm\"", "/grippers/spacing");
   scenes.push_back(
       {"gripper speed", "a preshape and strokes of 1 ms in a case: stretched to 0.2 m/s",
@@ -114,6 +120,20 @@ void add_speeds(Scenes& scenes) {
   scenes.back().says = "finite";
 }
 
+/// How far the interlink that is nearest to a stop is beyond it at the end [m]; < 0 between them.
+double beyond_stops(const StressRun& run) {
+  const RigOptions& rig = *run.setup.scene.rig;
+  double most = -std::numeric_limits<double>::infinity();
+  const auto pairs = interlinks(rig);
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    const auto [i, j] = pairs[k];
+    const std::vector<Eigen::Vector3d>& joints = run.result.final.joint;
+    const double over = (joints[size_t(i)] - joints[size_t(j)]).norm() - interlink_length(rig, k);
+    most = std::max({most, over - rig.interlinks->play[1], -over - rig.interlinks->play[0]});
+  }
+  return most;
+}
+
 void add_links(Scenes& scenes) {
   // Neighbours 120 mm apart are sent 300 mm apart in height: links stand upright, actuators pull in vain.
   const auto torn = [](StressSetup& s) {
@@ -136,6 +156,15 @@ void add_links(Scenes& scenes) {
   scenes.back().most_shortening = 0.2;  // the ply between pads that links pull together is crushed
   scenes.back().otherwise = Verdict::stopped;
   scenes.back().says = "sheared by more than";
+  scenes.push_back(drape_scene("interlinks", "the same with play of 5 mm", [torn](StressSetup& s) {
+    torn(s);
+    s.scene.rig->interlinks->play = {0.005, 0.005};
+  }));
+  scenes.back().judge = [judge = scenes.back().judge](const StressRun& run) {
+    std::vector<StressCheck> checks = judge(run);
+    checks.push_back({"beyond its stops [m]", beyond_stops(run), -1e-9, 1e-9});
+    return checks;
+  };
   scenes.push_back(
       drape_scene("interlinks", "pads of 1 g", [](StressSetup& s) { s.scene.rig->pad_mass = 1e-3; }));
   scenes.back().otherwise = Verdict::refused;
@@ -158,6 +187,60 @@ void add_links(Scenes& scenes) {
   }));
   scenes.back().rests = false;  // long arms under light pads swing on
   scenes.back().judge = nullptr;
+}
+
+/// A drape with interlinks of another kind.
+StressScene link_scene(const std::string& name, const std::function<void(InterlinkOptions&)>& change,
+                       double speed = 1) {
+  StressScene scene = drape_scene("interlinks", name, [change, speed](StressSetup& s) {
+    change(*s.scene.rig->interlinks);
+    if (speed != 1) s.schedule = lay_down(s.scene, 0, speed);
+  });
+  scene.judge = [judge = scene.judge](const StressRun& run) {
+    std::vector<StressCheck> checks = judge ? judge(run) : std::vector<StressCheck>();
+    if (!run.setup.scene.rig->interlinks->stiffness)
+      checks.push_back(at_most("beyond its stops [m]", beyond_stops(run), 1e-9));
+    return checks;
+  };
+  return scene;
+}
+
+void add_soft_links(Scenes& scenes) {
+  for (const double speed : {1.0, 100.0}) {
+    scenes.push_back(link_scene(
+        "play of 0.2 mm, stops hit at speed x " + number_text(speed),
+        [](InterlinkOptions& o) {
+          o.play = {0.005, 0.005};
+        },
+        speed));
+  }
+  scenes.back().fast = true;
+  for (const double stiffness : {0.0, 1e3, 1e6, 1e12, 1e30}) {
+    scenes.push_back(link_scene("springs of " + number_text(stiffness) + " N/m",
+                                [stiffness](InterlinkOptions& o) { o.stiffness = stiffness; }));
+  }
+  scenes.push_back(link_scene("stops on springs of 1e12 N/m, play of 0.2 mm", [](InterlinkOptions& o) {
+    o.stiffness = 1e12;
+    o.play = {2e-4, 2e-4};
+  }));
+  const auto closing = [](std::vector<double> lengths) {
+    return [lengths = std::move(lengths)](InterlinkOptions& o) {
+      o.lengths = lengths;
+      o.closing = {0, 2};
+    };
+  };
+  scenes.push_back(link_scene("closing by 2 %", closing(std::vector(4, 0.1176))));
+  // The ply between pads that come 60 mm closer can go nowhere: it is crushed, or folds past its shear.
+  scenes.push_back(link_scene("closing to half", closing(std::vector(4, 0.06))));
+  scenes.back().otherwise = Verdict::stopped;
+  scenes.back().says = "sheared by more than";
+  scenes.push_back(link_scene("lengths that no quadrangle has", closing({0.1, 0.1, 0.1, 0.5})));
+  scenes.back().otherwise = Verdict::stopped;
+  scenes.back().says = "a fibre is torn";
+  scenes.push_back(
+      link_scene("lengths without time to close", [](InterlinkOptions& o) { o.lengths.assign(4, 0.11); }));
+  scenes.back().otherwise = Verdict::refused;
+  scenes.back().says = "needs time";
 }
 
 void add_forces(Scenes& scenes) {
@@ -239,6 +322,7 @@ void add_gravity_and_friction(Scenes& scenes) {
 void add_rig_scenes(Scenes& scenes) {
   add_speeds(scenes);
   add_links(scenes);
+  add_soft_links(scenes);
   add_forces(scenes);
   add_releases(scenes);
   add_cases(scenes);
