@@ -210,7 +210,7 @@ void add_soft_links(Scenes& scenes) {
     scenes.push_back(link_scene(
         "play of 0.2 mm, stops hit at speed x " + number_text(speed),
         [](InterlinkOptions& o) {
-          o.play = {0.005, 0.005};
+          o.play = {2e-4, 2e-4};
         },
         speed));
   }
