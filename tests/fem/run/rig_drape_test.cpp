@@ -43,6 +43,41 @@ TEST(RigDrape, KeepsPadsWithinTheirTiltLimitWhereActuatorsPressThemOntoAMoldStee
   EXPECT_GE(result.summary.energy.constraint, -1e-12);
 }
 
+/// Interlinks that close, have play and give way, all at once.
+TEST(RigDrape, WithInterlinksOfEveryKindClosesItsBooksAndGoesOnWithTheSameBits) {
+  Scene scene = test::middle_drape(0.24, 0.02);
+  InterlinkOptions& links = *scene.rig->interlinks;
+  for (size_t k = 0; k < interlinks(*scene.rig).size(); ++k)
+    links.lengths.push_back(0.098 + 0.0002 * double(k));
+  links.closing = {0.2, 1.8};
+  links.play = {0.0005, 0.0002};
+  for (const std::optional<double> stiffness : {std::optional<double>(), std::optional(1e5)}) {
+    links.stiffness = stiffness;
+    const Model model(scene);
+    const Schedule schedule = test::drop(scene);
+    const RunResult whole = simulate(model, {.schedule = &schedule});
+    ASSERT_EQ(whole.summary.status, RunStatus::done) << whole.summary.message;
+    EXPECT_LE(whole.summary.energy.balance_error, 1e-9);
+    EXPECT_LE(whole.summary.largest_link_error, 1e-12);
+    double over = -1;
+    const auto pairs = interlinks(*scene.rig);
+    for (size_t k = 0; k < pairs.size(); ++k) {
+      const auto& joints = whole.final.joint;
+      const double length =
+          (joints[size_t(pairs[k][0])] - joints[size_t(pairs[k][1])]).norm() - links.lengths[k];
+      over = std::max({over, length - links.play[1], -length - links.play[0]});
+    }
+    const double give = stiffness ? 50.0 / *stiffness : 0;  // of one actuator
+    EXPECT_LE(over, 1e-12 + give);
+    EXPECT_GE(over, -1e-12) << "some stop acts";
+    for (const double pause : {1.0, 5.5}) {  // while it closes, and on the mold
+      const State state = simulate(model, {.schedule = &schedule, .pause = pause}).state;
+      const RunResult rest = simulate(model, {.schedule = &schedule, .from = &state});
+      EXPECT_EQ(rest.summary.state_hash, whole.summary.state_hash) << pause;
+    }
+  }
+}
+
 TEST(RigDrape, KeepsRotationLimitsAgainstInterlinks) {
   Scene scene = corner_drape();
   scene.rig->rotation_limits = RotationLimits{{-6 * kDegree, 4 * kDegree}, {-5 * kDegree, 3 * kDegree}};
