@@ -8,6 +8,7 @@
 #include "fem/run/stable_step.hpp"
 #include "fem/run/state_file.hpp"
 #include "planner/base/quantity.hpp"
+#include "planner/base/spelling.hpp"
 #include "planner/base/text.hpp"
 #include "planner/cli/cli.hpp"
 #include "planner/drape/problem.hpp"
@@ -195,6 +196,11 @@ Schedule schedule_of(const DrapeProblem& problem, const std::string& name) {
   if (std::filesystem::is_directory(name, error)) {
     throw WrongInput(
         fmt::format("{}: is a folder; a schedule is uniform, wave or a file like schedule.json", name));
+  }
+  if (!std::filesystem::exists(name, error)) {
+    const std::string nearest = nearest_word(name, {"uniform", "wave"});
+    throw WrongInput(fmt::format("{}: there is no such file{}", name,
+                                 nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
   }
   const RigOptions& rig = *problem.definition().grippers;
   ScheduleReading reading = read_schedule(name, rig);
