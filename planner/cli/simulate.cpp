@@ -216,7 +216,7 @@ Schedule schedule_of(const DrapeProblem& problem, const std::string& name) {
 
 std::string score_line(const Drape& drape) {
   const Score& score = drape.score;
-  if (!score.valid) return "no score: " + score.reason + "\n";
+  if (!score.valid) return fmt::format("no score: {}\n", score.reason);
   return fmt::format("{}\npenetration {:.3f} mm; kinetic over internal energy at most {:.2g}\n",
                      score_text(score), 1e3 * drape.run.summary.largest_penetration,
                      drape.run.summary.largest_kinetic_ratio);

@@ -69,9 +69,7 @@ std::vector<std::string> notes_of(const DrapeProblem& problem) {
 }  // namespace
 
 std::string terms_line(const Model& model) {
-  std::string line;
-  for (const std::string& name : model.term_names()) line += (line.empty() ? "[" : " [") + name + "]";
-  return line;
+  return fmt::format("[{}]", fmt::join(model.term_names(), "] ["));
 }
 
 DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
