@@ -1,7 +1,8 @@
 #include "mapping/geodesic.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include <Eigen/Geometry>
@@ -58,9 +59,7 @@ Eigen::Vector3d tangent(const Mold& mold, const Eigen::Vector2d& at, const Eigen
 }
 
 [[noreturn]] void throw_at(const char* what, const Eigen::Vector2d& at) {
-  std::ostringstream text;
-  text << what << " (x, y) = (" << at.x() << ", " << at.y() << ") m";
-  throw NotFinished(text.str());
+  throw NotFinished(fmt::format("{} (x, y) = ({:g}, {:g}) m", what, at.x(), at.y()));
 }
 
 // Shooting: a fixed number of steps, so that the end point is a smooth function of angle and length. 256

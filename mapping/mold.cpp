@@ -1,12 +1,13 @@
 #include "mapping/mold.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "mapping/error.hpp"
@@ -138,8 +139,8 @@ Eigen::MatrixXd dense_coefficients(const PolynomialShape& shape) {
   int rows = 1, cols = 1;
   for (const PolynomialShape::Term& term : shape.terms) {
     if (term.i < 0 || term.j < 0 || term.i > kHighestPower || term.j > kHighestPower) {
-      throw WrongInput("mold: power of a polynomial term must lie in 0.." + std::to_string(kHighestPower) +
-                       ", got x^" + std::to_string(term.i) + " y^" + std::to_string(term.j));
+      throw WrongInput(fmt::format("mold: power of a polynomial term must lie in 0..{}, got x^{} y^{}",
+                                   kHighestPower, term.i, term.j));
     }
     rows = std::max(rows, term.i + 1);
     cols = std::max(cols, term.j + 1);
@@ -249,13 +250,12 @@ void cylinder_heights(const CylinderShape& shape, int n, const double* __restric
 
 void check_radius(const char* shape, double radius) {
   if (!(radius > 0) || !std::isfinite(radius)) {
-    throw WrongInput(std::string("mold: radius of the ") + shape + " must be > 0 m, got " +
-                     std::to_string(radius));
+    throw WrongInput(fmt::format("mold: radius of the {} must be > 0 m, got {:f}", shape, radius));
   }
 }
 
 void check_centre(const char* shape, const Eigen::Vector3d& centre) {
-  if (!centre.allFinite()) throw WrongInput(std::string("mold: centre of the ") + shape + " is not finite");
+  if (!centre.allFinite()) throw WrongInput(fmt::format("mold: centre of the {} is not finite", shape));
 }
 
 void check(const Extent& extent) {
@@ -280,7 +280,7 @@ Mold::Mold(Shape shape, Extent extent) : shape_(std::move(shape)), extent_(std::
       Overload{
           [](const PlaneShape& s) {
             if (!(std::abs(s.angle) < std::numbers::pi / 2)) {
-              throw WrongInput("mold: |angle| of the plane must be < pi/2, got " + std::to_string(s.angle));
+              throw WrongInput(fmt::format("mold: |angle| of the plane must be < pi/2, got {:f}", s.angle));
             }
           },
           [this](const PolynomialShape& s) { dense_ = dense_coefficients(s); },

@@ -1,12 +1,12 @@
 #include "mapping/net.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
-#include <string>
 
 #include <Eigen/Geometry>
 
@@ -25,9 +25,7 @@ constexpr double kMostNodes = 4e6;  // a net beyond this is a typing error in th
 using HalfLines = std::array<Eigen::Vector2d, 4>;
 
 [[noreturn]] void throw_at(const char* what, const Eigen::Vector3d& at) {
-  std::ostringstream text;
-  text << "mapping: " << what << " (x, y) = (" << at.x() << ", " << at.y() << ") m";
-  throw NotFinished(text.str());
+  throw NotFinished(fmt::format("mapping: {} (x, y) = ({:g}, {:g}) m", what, at.x(), at.y()));
 }
 
 void check(const Ply& ply, const MappingOptions& options) {
@@ -41,8 +39,8 @@ void check(const Ply& ply, const MappingOptions& options) {
   if (!(options.cell_size > 0)) throw WrongInput("mapping: cell_size must be > 0 m");
   const Eigen::Vector2d cells = box.sizes() / options.cell_size;
   if (!((cells.x() + 3) * (cells.y() + 3) <= kMostNodes)) {
-    throw WrongInput("mapping: cell_size " + std::to_string(options.cell_size) +
-                     " m gives a net of too many nodes");
+    throw WrongInput(
+        fmt::format("mapping: cell_size {:f} m gives a net of too many nodes", options.cell_size));
   }
   const Eigen::Vector2d from_middle = (options.ply_start - box.center()).cwiseAbs();
   if (!((from_middle - (0.5 + kRoundOff) * box.sizes()).maxCoeff() <= 0)) {

@@ -1,8 +1,9 @@
 // What is read from a mapped net: places of ply points, outline, corners, shear.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 
 #include <Eigen/Geometry>
 
@@ -21,8 +22,7 @@ struct Stencil {
 
 Stencil stencil_at(const std::vector<double>& lines, double at, const char* name) {
   if (!(at >= lines.front() - kRoundOff && at <= lines.back() + kRoundOff)) {
-    throw std::out_of_range("mapped_point: " + std::string(name) + " = " + std::to_string(at) +
-                            " m lies outside the ply");
+    throw std::out_of_range(fmt::format("mapped_point: {} = {:f} m lies outside the ply", name, at));
   }
   const int n = static_cast<int>(lines.size());
   Stencil stencil;

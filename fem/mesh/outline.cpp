@@ -7,6 +7,8 @@
 // as a triangle, a quadrilateral whose inner node is repeated: its two short edges run along the fibres, so
 // it cannot lock. Where inner nodes give way to outer ones, and whether lines run through corners, is tried
 // in a few ways: the mesh that allows the largest time step is taken.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -43,9 +45,9 @@ constexpr double kSmallestStep = 0.3;
 enum class Side { out, on, in };
 
 [[noreturn]] void too_coarse(const std::string& why, const Vector2d& at, double mesh_size) {
-  throw WrongInput("outline_mesh: " + why + " near (" + std::to_string(1e3 * at.x()) + ", " +
-                   std::to_string(1e3 * at.y()) + ") mm: the mesh size " + std::to_string(1e3 * mesh_size) +
-                   " mm is too large for this outline");
+  throw WrongInput(fmt::format(
+      "outline_mesh: {} near ({:f}, {:f}) mm: the mesh size {:f} mm is too large for this outline", why,
+      1e3 * at.x(), 1e3 * at.y(), 1e3 * mesh_size));
 }
 
 double cross(const Vector2d& a, const Vector2d& b) {

@@ -1,5 +1,7 @@
 #include "fem/model/masses.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -43,10 +45,10 @@ void NodalMasses::hold(const Scene& scene) {
   for (const int node : held_) mass_[size_t(node)] = 0;
   for (const int node : scene.pinned) mass_[size_t(node)] = 0;
   for (const Grip& grip : scene.grips) {
-    if (grip.nodes.empty()) throw WrongInput("grip " + grip.name + " holds no node");
+    if (grip.nodes.empty()) throw WrongInput(fmt::format("grip {} holds no node", grip.name));
     for (const int node : grip.nodes) {
       if (mass_[size_t(node)] == 0)
-        throw WrongInput("grip " + grip.name + " holds a node that is held by something else");
+        throw WrongInput(fmt::format("grip {} holds a node that is held by something else", grip.name));
       mass_[size_t(node)] = 0;
       held_.push_back(node);
       guided_.push_back(node);

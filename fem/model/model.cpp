@@ -1,5 +1,7 @@
 #include "fem/model/model.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -126,7 +128,7 @@ std::vector<std::string> Model::term_names() const {
   std::vector<std::string> names;
   for (const auto& term : terms_) names.emplace_back(term->name());
   const int points = scene_.options.section_points;
-  names.front() += ", " + std::to_string(points) + (points == 1 ? " section point" : " section points");
+  names.front() += fmt::format(", {} section point{}", points, points == 1 ? "" : "s");
   if (fibre_inertia_) names.emplace_back("fibre inertia");
   if (scene_.damping) names.emplace_back("mass damping");
   if (rig_) names.emplace_back(scene_.rig->interlinks ? "gripper rig with interlinks" : "gripper rig");

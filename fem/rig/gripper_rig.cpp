@@ -1,8 +1,9 @@
 #include "fem/rig/gripper_rig.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "mapping/error.hpp"
 
@@ -25,8 +26,8 @@ bool is_finite(const PlaneKnot& knot) {
 template <class AnyKnot>
 void check_knots(const RigOptions& rig, const std::vector<std::vector<AnyKnot>>& paths) {
   for (size_t g = 0; g < paths.size(); ++g) {
-    const auto fail = [&](const std::string& what) {
-      throw WrongInput("the path of gripper " + rig.name(int(g)) + " " + what);
+    const auto fail = [&](const char* what) {
+      throw WrongInput(fmt::format("the path of gripper {} {}", rig.name(int(g)), what));
     };
     if (paths[g].empty()) fail("has no knots");
     for (size_t k = 0; k < paths[g].size(); ++k) {
@@ -109,7 +110,7 @@ GripperRig::GripperRig(const RigOptions& rig, const std::vector<Eigen::Vector2d>
     }
     pad.last = int(tied_.size());
     if (pad.last == pad.first) {
-      throw WrongInput("gripper " + rig.name(g) + " has no ply node under its pad: refine the mesh");
+      throw WrongInput(fmt::format("gripper {} has no ply node under its pad: refine the mesh", rig.name(g)));
     }
     lay_patches(pad);
     pads_.push_back(pad);
@@ -172,8 +173,8 @@ void GripperRig::check(const Schedule& schedule) const {
   check_knots(rig_, schedule.paths);
   check_knots(rig_, schedule.plane_paths);
   if (int(schedule.paths.size()) != rig_.count()) {
-    throw WrongInput("the schedule has " + std::to_string(schedule.paths.size()) + " grippers, the rig " +
-                     std::to_string(rig_.count()));
+    throw WrongInput(
+        fmt::format("the schedule has {} grippers, the rig {}", schedule.paths.size(), rig_.count()));
   }
   for (const auto& path : schedule.paths) {
     if (path.front().z != schedule.paths.front().front().z)
@@ -189,10 +190,9 @@ void GripperRig::check(const Schedule& schedule) const {
   for (int g = 0; g < rig_.count(); ++g) {
     const Eigen::Vector2d apart = schedule.plane_paths[size_t(g)].front().xy - place_[size_t(g)];
     if (apart.norm() <= kStartSlack) continue;
-    throw WrongInput("the in-plane path of gripper " + rig_.name(g) + " starts " +
-                     std::to_string(1e3 * apart.norm()) + " mm off its joint's place, (" +
-                     std::to_string(1e3 * place_[size_t(g)].x()) + ", " +
-                     std::to_string(1e3 * place_[size_t(g)].y()) + ") mm");
+    throw WrongInput(fmt::format(
+        "the in-plane path of gripper {} starts {:f} mm off its joint's place, ({:f}, {:f}) mm", rig_.name(g),
+        1e3 * apart.norm(), 1e3 * place_[size_t(g)].x(), 1e3 * place_[size_t(g)].y()));
   }
 }
 

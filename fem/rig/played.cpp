@@ -73,7 +73,7 @@ std::string paths_difference(const RigOptions& rig, const std::vector<std::vecto
     return fmt::format("{} paths instead of {}", paths.size(), others.size());
   for (size_t g = 0; g < paths.size(); ++g) {
     const std::string difference = path_difference(paths[g], others[g], until);
-    if (!difference.empty()) return "gripper " + rig.name(int(g)) + ' ' + difference;
+    if (!difference.empty()) return fmt::format("gripper {} {}", rig.name(int(g)), difference);
   }
   return {};
 }

@@ -1,5 +1,7 @@
 #include "fem/rig/rig.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -77,7 +79,7 @@ std::vector<double> row_places(const RigOptions& rig, double mesh_size) {
 
 std::string RigOptions::name(int gripper) const {
   const auto [i, j] = indices(gripper);
-  return '[' + std::to_string(i) + ", " + std::to_string(j) + ']';
+  return fmt::format("[{}, {}]", i, j);
 }
 
 double interlink_length(const RigOptions& rig, size_t index) {

@@ -1,5 +1,6 @@
 #include "fem/run/state_file.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <bit>
@@ -168,7 +169,7 @@ void save_state(const std::filesystem::path& path, const Model& model, const Sta
   const std::uint64_t sum = checksum(writer.bytes());
   writer.word(sum);
   std::filesystem::path beside = path;  // a name that no other process uses
-  beside += ".part-" + std::to_string(::getpid());
+  beside += fmt::format(".part-{}", ::getpid());
   std::error_code error;
   {
     std::ofstream file(beside, std::ios::binary);
@@ -180,7 +181,7 @@ void save_state(const std::filesystem::path& path, const Model& model, const Sta
   if (!error) return;
   std::error_code ignored;
   std::filesystem::remove(beside, ignored);
-  throw NotFinished(path.string() + ": cannot be written: " + error.message());
+  throw NotFinished(fmt::format("{}: cannot be written: {}", path.string(), error.message()));
 }
 
 StateReading load_state(const std::filesystem::path& path, const Model& model, const Schedule* schedule) {
@@ -190,7 +191,7 @@ StateReading load_state(const std::filesystem::path& path, const Model& model, c
   try {
     return {state_from(bytes, model, schedule), {}};
   } catch (const std::runtime_error& reason) {
-    return {std::nullopt, path.string() + ": " + reason.what()};
+    return {std::nullopt, fmt::format("{}: {}", path.string(), reason.what())};
   }
 }
 

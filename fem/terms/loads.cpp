@@ -1,6 +1,6 @@
 #include "fem/terms/loads.hpp"
 
-#include <string>
+#include <fmt/format.h>
 
 #include "mapping/error.hpp"
 
@@ -62,8 +62,7 @@ std::unique_ptr<Term> make_loads(const Loads& loads, const std::vector<double>& 
   for (const auto* list : {&loads.forces, &loads.moments}) {
     for (const NodalLoad& load : *list) {
       if (load.node < 0 || size_t(load.node) >= area.size() || !load.value.allFinite()) {
-        throw WrongInput("loads: node " + std::to_string(load.node) +
-                         " does not exist or its load is not finite");
+        throw WrongInput(fmt::format("loads: node {} does not exist or its load is not finite", load.node));
       }
     }
   }

@@ -83,7 +83,7 @@ class Builder : public json::json_sax_t {
   bool number_unsigned(number_unsigned_t value) override { return add(value); }
   bool number_float(number_float_t value, const string_t& digits) override {
     const bool zero = digits.substr(0, digits.find_first_of("eE")).find_first_of("123456789") == digits.npos;
-    if (value == 0 && !zero) fault(next_pointer(), "number underflow parsing '" + digits + "'");
+    if (value == 0 && !zero) fault(next_pointer(), fmt::format("number underflow parsing '{}'", digits));
     return add(value);
   }
   bool string(string_t& value) override {
@@ -130,7 +130,7 @@ class Builder : public json::json_sax_t {
   [[nodiscard]] std::string next_pointer() const {
     if (levels_.empty()) return "";
     const auto& [value, pointer] = levels_.back();
-    return pointer + (value->is_array() ? '/' + std::to_string(value->size()) : pointer_token(key_));
+    return pointer + (value->is_array() ? fmt::format("/{}", value->size()) : pointer_token(key_));
   }
 
   json& place(json value) {
@@ -195,7 +195,7 @@ json checked_json(std::string_view text) {
   const TextFault& fault = parsed.faults.front();
   std::string place = fault.line > 1 ? fmt::format("line {}: ", fault.line) : "";
   if (fault.column > 0) place += fmt::format("column {}: ", fault.column);
-  if (!fault.pointer.empty()) place += fault.pointer + ": ";
+  if (!fault.pointer.empty()) place += fmt::format("{}: ", fault.pointer);
   throw WrongInput(place + fault.message);
 }
 

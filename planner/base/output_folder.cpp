@@ -169,9 +169,9 @@ void OutputFolder::open_lock() {
         throw WrongInput(fmt::format("{}: cannot be locked: {}", file.string(), reason(error)));
       std::string owner = first_bytes(lock_);
       std::replace(owner.begin(), owner.end(), '\n', ' ');
-      throw WrongInput(
-          fmt::format("{}: another run works in this folder{}; wait for its end or choose another one",
-                      folder_.string(), owner.empty() ? "" : " (" + owner.substr(0, owner.size() - 1) + ")"));
+      throw WrongInput(fmt::format(
+          "{}: another run works in this folder{}; wait for its end or choose another one", folder_.string(),
+          owner.empty() ? "" : fmt::format(" ({})", owner.substr(0, owner.size() - 1))));
     }
     if (lock_lies_in_folder()) return;
     ::close(lock_);  // its owner has removed it meanwhile

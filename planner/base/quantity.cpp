@@ -1,5 +1,7 @@
 #include "planner/base/quantity.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -54,7 +56,7 @@ std::string_view trimmed(std::string_view text) {
 
 std::string expected(Dimension dimension) {
   const DimensionWords& words = words_of(dimension);
-  return "expected " + words.name + ", e.g. \"" + words.example + '"';
+  return fmt::format("expected {}, e.g. \"{}\"", words.name, words.example);
 }
 
 double to_inside(double number, const Unit& unit) {
@@ -90,18 +92,17 @@ const Unit* find_unit(Dimension dimension, std::string_view name) {
 }
 
 std::string unit_fault(std::string_view name, Dimension dimension) {
-  const std::string quoted = '"' + std::string(name) + '"';
   std::vector<std::string> names;
   for (const Unit& unit : words_of(dimension).units) names.push_back(unit.name);
   for (const auto& [other, words] : all_dimensions()) {
     if (other != Dimension::none && find_unit(other, name) != nullptr) {
-      return quoted + " is the unit of " + words.name + "; " + expected(dimension);
+      return fmt::format("\"{}\" is the unit of {}; {}", name, words.name, expected(dimension));
     }
   }
-  std::string nearest = nearest_word(name, names);
-  std::string fault = "unknown unit " + quoted + "; ";
-  if (!nearest.empty()) fault += "did you mean \"" + nearest + "\"? ";
-  return fault + expected(dimension) + " (units: " + alternatives_text(names) + ")";
+  const std::string nearest = nearest_word(name, names);
+  const std::string hint = nearest.empty() ? "" : fmt::format("did you mean \"{}\"? ", nearest);
+  return fmt::format("unknown unit \"{}\"; {}{} (units: {})", name, hint, expected(dimension),
+                     alternatives_text(names));
 }
 
 std::optional<double> parse_quantity(std::string_view text, Dimension dimension, std::string& fault) {
@@ -142,8 +143,9 @@ std::string format_quantity(double value, Dimension dimension) {
   const DimensionWords& words = words_of(dimension);
   if (dimension == Dimension::none) return format_number(value);
   const Unit& preferred = words.units[words.preferred];
-  if (const auto number = number_in_unit(value, preferred)) return *number + ' ' + preferred.name;
-  return format_number(value) + ' ' + words.units.front().name;
+  if (const auto number = number_in_unit(value, preferred))
+    return fmt::format("{} {}", *number, preferred.name);
+  return fmt::format("{} {}", format_number(value), words.units.front().name);
 }
 
 }  // namespace drapeplan

@@ -1,5 +1,7 @@
 #include "planner/base/spelling.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -54,7 +56,7 @@ std::string alternatives_text(const std::vector<std::string>& words) {
   std::string text;
   for (size_t k = 0; k < words.size(); ++k) {
     if (k > 0) text += k + 1 == words.size() ? " or " : ", ";
-    text += '"' + words[k] + '"';
+    text += fmt::format("\"{}\"", words[k]);
   }
   return text;
 }

@@ -1,5 +1,7 @@
 #include "planner/base/text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -54,11 +56,7 @@ std::string exact(double value) {
 
 std::string fixed(double value, int decimals) {
   if (!std::isfinite(value)) return "\u2013";
-  std::array<char, 400> buffer;  // the largest double has 309 digits before the point
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, decimals)
-          .ptr;
-  std::string text(buffer.data(), end);
+  const std::string text = fmt::format("{:.{}f}", value, decimals);
   const bool zero = text.find_first_not_of("-0.") == std::string::npos;
   return zero && text.front() == '-' ? text.substr(1) : text;
 }
@@ -123,7 +121,8 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
   if (good && std::rename(partial.c_str(), file.c_str()) != 0) good = false, error = errno;
   if (good) return;
   if (stream != nullptr) std::remove(partial.c_str());
-  throw NotFinished(file.string() + ": cannot be written: " + std::generic_category().message(error));
+  throw NotFinished(
+      fmt::format("{}: cannot be written: {}", file.string(), std::generic_category().message(error)));
 }
 
 }  // namespace drapeplan

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 #include <set>
 
@@ -22,14 +21,14 @@ bool on_ply(const Ply& ply, const Eigen::Vector2d& place) {
 }
 
 std::string place_text(const Eigen::Vector2d& place) {
-  return "(" + format_quantity(place.x(), Dimension::length) + ", " +
-         format_quantity(place.y(), Dimension::length) + ")";
+  return fmt::format("({}, {})", format_quantity(place.x(), Dimension::length),
+                     format_quantity(place.y(), Dimension::length));
 }
 
 std::string ply_text(const Ply& ply) {
   const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
-  const std::string reach = " reaches from " + place_text(box.min()) + " to " + place_text(box.max());
-  return ply.outline.empty() ? "the ply" + reach : "the ply's outline" + reach;
+  return fmt::format("{} reaches from {} to {}", ply.outline.empty() ? "the ply" : "the ply's outline",
+                     place_text(box.min()), place_text(box.max()));
 }
 
 /// Without an outline a ply is a rectangle, whose size must be stated.
@@ -38,19 +37,19 @@ void check_ply(const CaseFields& fields, FieldReader& reader) {
   const bool stated_well = reader.good("/ply");
   for (const auto& [name, size] : {std::pair{"width", fields.width}, {"height", fields.height}}) {
     if (!outline.empty() && size)
-      reader.fail(std::string("/ply/") + name,
+      reader.fail(fmt::format("/ply/{}", name),
                   "belongs to a ply without an outline; the outline says the size");
     if (outline.empty() && !size && stated_well)
-      reader.fail("/ply", std::string("\"") + name +
-                              "\" is missing; a ply has either width and height or an outline");
+      reader.fail("/ply",
+                  fmt::format("\"{}\" is missing; a ply has either width and height or an outline", name));
   }
   if (outline.empty() || !reader.good("/ply/outline")) return;
   if (const auto edges = crossing_edges(outline)) {
-    const auto edge = [](size_t k) { return "the edge from point " + std::to_string(k + 1); };
+    const auto edge = [](size_t k) { return fmt::format("the edge from point {}", k + 1); };
     const auto [i, j] = *edges;
     reader.fail("/ply/outline",
                 i == j ? edge(i) + " has no length"
-                       : "the outline crosses or touches itself: " + edge(i) + " meets " + edge(j));
+                       : fmt::format("the outline crosses or touches itself: {} meets {}", edge(i), edge(j)));
   }
 }
 
@@ -63,8 +62,8 @@ void check_on_ply(FieldReader& reader, const std::string& pointer, const Ply& pl
 void check_cells(FieldReader& reader, const std::string& pointer, const Ply& ply, double size) {
   const double cells = std::ceil(ply.width / size - kSlack) * std::ceil(ply.height / size - kSlack);
   if (reader.good(pointer) && !(cells <= kMostCells)) {
-    reader.fail(pointer, "would make " + std::to_string(std::int64_t(cells)) +
-                             " cells of this ply; allowed: " + std::to_string(std::int64_t(kMostCells)));
+    reader.fail(pointer,
+                fmt::format("would make {:.0f} cells of this ply; allowed: {:.0f}", cells, kMostCells));
   }
 }
 
@@ -75,9 +74,10 @@ void check_mapping(const CaseFields& fields, FieldReader& reader) {
               fields.definition.ply, mapping->cell_size);
   const bool start_stated = reader.good("/mapping/ply_start");
   if (!on_ply(fields.definition.ply, mapping->ply_start)) {
-    reader.fail(start_stated ? "/mapping/ply_start" : "/mapping",
-                std::string(start_stated ? "lies" : "its ply_start, the ply's origin, lies") +
-                    " outside the ply; " + ply_text(fields.definition.ply));
+    reader.fail(
+        start_stated ? "/mapping/ply_start" : "/mapping",
+        fmt::format("{} outside the ply; {}", start_stated ? "lies" : "its ply_start, the ply's origin, lies",
+                    ply_text(fields.definition.ply)));
   }
   if (!fields.mold || !reader.good("/mold")) return;
   const Extent& extent = fields.mold->extent;
@@ -86,8 +86,8 @@ void check_mapping(const CaseFields& fields, FieldReader& reader) {
   if (inside) return;
   const bool stated = reader.good("/mapping/start");
   reader.fail(stated ? "/mapping/start" : "/ply",
-              std::string(stated ? "lies" : "its position, where the mapping starts, lies") +
-                  " outside the mold's extent");
+              fmt::format("{} outside the mold's extent",
+                          stated ? "lies" : "its position, where the mapping starts, lies"));
 }
 
 void check_rotation_limits(const RigOptions& rig, FieldReader& reader) {
@@ -125,8 +125,9 @@ void check_grippers(const CaseFields& fields, FieldReader& reader) {
   const RigOptions& rig = *fields.definition.grippers;
   for (int g = rig.count() - 1; g >= 0 && reader.good("/ply"); --g) {
     if (on_ply(fields.definition.ply, rig.place(g))) continue;
-    reader.fail("/grippers/spacing", "gripper " + rig.name(g) + " is off the ply: its pad's centre lies at " +
-                                         place_text(rig.place(g)) + "; " + ply_text(fields.definition.ply));
+    reader.fail("/grippers/spacing",
+                fmt::format("gripper {} is off the ply: its pad's centre lies at {}; {}", rig.name(g),
+                            place_text(rig.place(g)), ply_text(fields.definition.ply)));
     break;
   }
   if (rig.count() > 1 && rig.spacing < 2 * rig.pad_radius) {
@@ -159,7 +160,7 @@ void check_grips(const CaseFields& fields, FieldReader& reader) {
   std::set<std::string> names;
   for (size_t k = 0; k < fields.definition.grips.size(); ++k) {
     const GripOptions& grip = fields.definition.grips[k];
-    const std::string pointer = "/grips/" + std::to_string(k);
+    const std::string pointer = fmt::format("/grips/{}", k);
     if (reader.good(pointer + "/name") && !names.insert(grip.name).second)
       reader.fail(pointer + "/name", "another grip has the same name");
     if (!reader.good("/ply") || !reader.good(pointer + "/from") || !reader.good(pointer + "/to")) continue;
@@ -180,7 +181,7 @@ void check_probes(const CaseFields& fields, FieldReader& reader) {
   for (const GripOptions& grip : fields.definition.grips) names.insert(grip.name);
   for (size_t k = 0; k < fields.definition.probes.size(); ++k) {
     const Probe& probe = fields.definition.probes[k];
-    const std::string pointer = "/probes/" + std::to_string(k);
+    const std::string pointer = fmt::format("/probes/{}", k);
     if (reader.good(pointer + "/name") && !names.insert(probe.name).second) {
       reader.fail(pointer + "/name", "another probe or grip has the same name");
     }
@@ -190,11 +191,11 @@ void check_probes(const CaseFields& fields, FieldReader& reader) {
 
 /// Faster rates are resisted more: what is weaker the faster it goes would feed every vibration.
 void check_rates(FieldReader& reader, const std::string& mode, const CurveFields& fields) {
-  const std::string pointer = "/material/" + mode + "/rates";
+  const std::string pointer = fmt::format("/material/{}/rates", mode);
   if (fields.rates.empty() || !reader.good("/material/" + mode)) return;
   const StressTable table = stress_table(fields);
   for (size_t k = 1; k < fields.rates.size(); ++k) {
-    const std::string place = pointer + "/" + std::to_string(k);
+    const std::string place = fmt::format("{}/{}", pointer, k);
     if (!(table.rates[k] > table.rates[k - 1])) {
       reader.fail(place + "/rate", "rates must increase");
       continue;
@@ -205,8 +206,7 @@ void check_rates(FieldReader& reader, const std::string& mode, const CurveFields
     for (const double strain : strains) {
       const double slow = table.curves[k - 1](strain), fast = table.curves[k](strain);
       if (fast >= slow * (1 - kSlackShare)) continue;
-      reader.fail(place,
-                  "at strain " + std::to_string(strain) + " its stress is below that of the slower rate");
+      reader.fail(place, fmt::format("at strain {:f} its stress is below that of the slower rate", strain));
       break;
     }
   }
@@ -223,8 +223,9 @@ void check_on_mold(const CaseFields& fields, FieldReader& reader) {
     beyond = std::max({beyond, (extent.lower - xy).maxCoeff(), (xy - extent.upper).maxCoeff()});
   }
   if (beyond > kSlack)
-    reader.fail("/mold/extent", "the flat ply reaches " + format_quantity(beyond, Dimension::length) +
-                                    " beyond it: there is no mold under its edge");
+    reader.fail("/mold/extent",
+                fmt::format("the flat ply reaches {} beyond it: there is no mold under its edge",
+                            format_quantity(beyond, Dimension::length)));
 }
 
 /// Curves are sampled over all that they reach: what no fibre and no fabric can do is a wrong unit.
@@ -238,7 +239,7 @@ void check_reach(FieldReader& reader, const std::string& mode, const CurveFields
   const std::string pointer = "/material/" + mode;
   check(pointer + "/points", fields.curve);
   for (size_t k = 0; k < fields.rates.size(); ++k)
-    check(pointer + "/rates/" + std::to_string(k) + "/points", fields.rates[k].curve);
+    check(fmt::format("{}/rates/{}/points", pointer, k), fields.rates[k].curve);
 }
 
 void check_material(const CaseFields& fields, FieldReader& reader) {
@@ -279,7 +280,8 @@ void check_case(const CaseFields& fields, FieldReader& reader) {
   check_on_ply(reader, "/schedule/wave/start", c.ply, c.schedule.wave_start);
   if (reader.good("/fem")) check_cells(reader, "/fem/mesh_size", c.ply, fields.fem.mesh_size);
   for (const auto& [name, options] : c.fidelities) {
-    check_cells(reader, "/fidelities" + pointer_token(name) + "/mesh_size", c.ply, options.mesh_size);
+    check_cells(reader, fmt::format("/fidelities{}/mesh_size", pointer_token(name)), c.ply,
+                options.mesh_size);
   }
 }
 

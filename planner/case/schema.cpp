@@ -1,4 +1,6 @@
 // JSON Schema (draft 2020-12) of the case file, and `explain`, which reads it.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -164,7 +166,7 @@ class SchemaWriter : public FieldVisitor {
       json& merged = here["properties"][name];
       json words = merged.is_object() ? merged["x-only-with"] : json::array();
       merged = schema;
-      words.push_back(selector + " = " + word);
+      words.push_back(fmt::format("{} = {}", selector, word));
       merged["x-only-with"] = std::move(words);
     }
     // A selector that is not stated chooses the default alternative.
@@ -257,25 +259,26 @@ std::string kind_text(const json& field) {
   if (field.contains("enum")) return "one of: " + words(field["enum"]);
   if (field.contains("x-quantity")) {
     const bool list = field.value("type", json()) == "array";
-    return std::string(list ? "list, each " : "") + field["x-quantity"].get<std::string>() +
-           " (units: " + words(field["x-units"]) + ")";
+    return fmt::format("{}{} (units: {})", list ? "list, each " : "", field["x-quantity"].get<std::string>(),
+                       words(field["x-units"]));
   }
   const json type = field.value("type", json());
   return type.is_array() ? words(type) : type == "number" ? "bare number" : type.get<std::string>();
 }
 
-void explain_one(const std::string& path, const json& field, bool required, std::ostringstream& text) {
-  text << path << '\n';
-  if (field.contains("description")) text << "  " << field["description"].get<std::string>() << '\n';
-  text << "  type:    " << kind_text(field) << '\n';
-  if (field.contains("x-allowed")) text << "  allowed: " << field["x-allowed"].get<std::string>() << '\n';
-  if (field.contains("x-only-with")) text << "  only if: " << words(field["x-only-with"]) << '\n';
+void explain_one(const std::string& path, const json& field, bool required, std::string& text) {
+  text += path + '\n';
+  if (field.contains("description")) text += fmt::format("  {}\n", field["description"].get<std::string>());
+  text += fmt::format("  type:    {}\n", kind_text(field));
+  if (field.contains("x-allowed"))
+    text += fmt::format("  allowed: {}\n", field["x-allowed"].get<std::string>());
+  if (field.contains("x-only-with")) text += fmt::format("  only if: {}\n", words(field["x-only-with"]));
   if (required) {
-    text << "  required\n";
+    text += "  required\n";
   } else if (field.contains("default")) {
-    text << "  default: " << value_text(field["default"]) << '\n';
+    text += fmt::format("  default: {}\n", value_text(field["default"]));
   } else if (field.contains("x-default")) {
-    text << "  default: " << field["x-default"].get<std::string>() << '\n';
+    text += fmt::format("  default: {}\n", field["x-default"].get<std::string>());
   }
 }
 
@@ -285,7 +288,7 @@ bool is_required(const json& parent, const std::string& name) {
   return std::find(required.begin(), required.end(), name) != required.end();
 }
 
-void explain_tree(const std::string& path, const json& field, bool required, std::ostringstream& text) {
+void explain_tree(const std::string& path, const json& field, bool required, std::string& text) {
   explain_one(path, field, required, text);
   const json* inside = &field;
   if (field.contains("items")) inside = &field["items"];
@@ -294,7 +297,7 @@ void explain_tree(const std::string& path, const json& field, bool required, std
   }
   if (!inside->contains("properties")) return;
   if (inside->contains("additionalProperties") && inside != &field && !field.contains("items")) {
-    text << "  names of your choice, each with\n";
+    text += "  names of your choice, each with\n";
   }
   for (const auto& [name, child] : (*inside)["properties"].items()) {
     explain_tree(path + (inside == &field || field.contains("items") ? "." : ".*.") + name, child,
@@ -318,13 +321,13 @@ std::string explain_field(const std::string& path, std::string& nearest) {
   const json schema = case_schema();
   nearest.clear();
   const json* field = path.empty() ? nullptr : find_field(schema, path);
-  std::ostringstream text;
   if (field != nullptr) {
     const size_t dot = path.rfind('.');
     const json* parent = dot == std::string::npos ? &schema : find_field(schema, path.substr(0, dot));
     const std::string name = dot == std::string::npos ? path : path.substr(dot + 1);
+    std::string text;
     explain_tree(path, *field, parent != nullptr && is_required(*parent, name), text);
-    return text.str();
+    return text;
   }
   std::vector<std::string> paths;
   collect_paths(schema, "", paths);

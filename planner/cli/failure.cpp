@@ -55,7 +55,7 @@ void print_failure(const Failure& failure, const std::string& subject) {
     return;
   }
   const bool named = subject.empty() || failure.reason.starts_with(subject);
-  std::cerr << "drapeplan: " << (named ? "" : subject + ": ") << failure.reason << '\n';
+  std::cerr << fmt::format("drapeplan: {}{}\n", named ? "" : subject + ": ", failure.reason);
 }
 
 }  // namespace drapeplan

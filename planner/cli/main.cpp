@@ -1,4 +1,6 @@
 // The drapeplan program: one verb per call; every verb lives in its own <verb>.cpp.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iostream>
 #include <string>
@@ -20,10 +22,9 @@ bool names_no_verb(const CLI::App& program, int argc, char** argv) {
   const std::string word = argv[1];
   if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return false;
   const std::string nearest = nearest_word(word, verbs);
-  std::cerr << "drapeplan: there is no verb \"" << word << '"'
-            << (nearest.empty() ? "; expected " + alternatives_text(verbs)
-                                : "; did you mean \"" + nearest + "\"?")
-            << '\n';
+  const std::string hint =
+      nearest.empty() ? "expected " + alternatives_text(verbs) : fmt::format("did you mean \"{}\"?", nearest);
+  std::cerr << fmt::format("drapeplan: there is no verb \"{}\"; {}\n", word, hint);
   return true;
 }
 

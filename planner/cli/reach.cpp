@@ -44,7 +44,7 @@ std::string result_text(const ReachProblem& problem, const ReachResult& reach) {
   }
   text += "  i =    ";
   for (int i = 0; i < problem.rig.columns; ++i) text += fmt::format("{:8}", i + 1);
-  return text + "\n\n" + explain_reach(problem, reach) + "\n";
+  return fmt::format("{}\n\n{}\n", text, explain_reach(problem, reach));
 }
 
 int reach(const ReachOptions& options) {

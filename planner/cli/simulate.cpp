@@ -8,6 +8,7 @@
 #include "fem/run/stable_step.hpp"
 #include "fem/run/state_file.hpp"
 #include "planner/base/quantity.hpp"
+#include "planner/base/spelling.hpp"
 #include "planner/base/text.hpp"
 #include "planner/cli/cli.hpp"
 #include "planner/drape/problem.hpp"
@@ -196,6 +197,11 @@ Schedule schedule_of(const DrapeProblem& problem, const std::string& name) {
     throw WrongInput(
         fmt::format("{}: is a folder; a schedule is uniform, wave or a file like schedule.json", name));
   }
+  if (!std::filesystem::exists(name, error)) {
+    const std::string nearest = nearest_word(name, {"uniform", "wave"});
+    throw WrongInput(fmt::format("{}: there is no such file{}", name,
+                                 nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
+  }
   const RigOptions& rig = *problem.definition().grippers;
   ScheduleReading reading = read_schedule(name, rig);
   if (!reading.errors.empty()) throw InputErrors(reading.errors);
@@ -210,7 +216,7 @@ Schedule schedule_of(const DrapeProblem& problem, const std::string& name) {
 
 std::string score_line(const Drape& drape) {
   const Score& score = drape.score;
-  if (!score.valid) return "no score: " + score.reason + "\n";
+  if (!score.valid) return fmt::format("no score: {}\n", score.reason);
   return fmt::format("{}\npenetration {:.3f} mm; kinetic over internal energy at most {:.2g}\n",
                      score_text(score), 1e3 * drape.run.summary.largest_penetration,
                      drape.run.summary.largest_kinetic_ratio);

@@ -24,7 +24,7 @@ std::vector<StressScene> chosen_scenes(const StressOptions& options) {
   for (StressScene& scene : stress_scenes()) {
     bool wanted = options.only.empty();
     for (const std::string& text : options.only)
-      wanted = wanted || (scene.group + ": " + scene.name).find(text) != std::string::npos;
+      wanted = wanted || fmt::format("{}: {}", scene.group, scene.name).find(text) != std::string::npos;
     if (wanted && (scene.fast || !options.fast)) chosen.push_back(std::move(scene));
   }
   return chosen;

@@ -72,7 +72,7 @@ MapResult map_case(const Case& definition) {
   try {
     result.net = map_ply(*definition.mold, definition.ply, *definition.mapping);
   } catch (const NotFinished& error) {
-    throw NotFinished(std::string("the ply cannot be mapped: ") + error.what());
+    throw NotFinished(fmt::format("the ply cannot be mapped: {}", error.what()));
   }
   result.boundary = prescribed_boundary(result.net, *definition.mold, definition.ply);
   result.corners = mapped_corners(result.net);

@@ -25,9 +25,9 @@ void check_fits(const Schedule& schedule, const RigOptions& rig) {
   const auto check = [&](const auto& paths, size_t count, const std::string& kind) {
     const bool empty_path = std::any_of(paths.begin(), paths.end(), empty);
     if (paths.size() == count && !empty_path) return;
-    throw std::invalid_argument("a schedule of " + std::to_string(paths.size()) + kind +
-                                " paths for a rig of " + std::to_string(rig.count()) + " grippers" +
-                                (empty_path ? ", one without knots" : ""));
+    throw std::invalid_argument(fmt::format("a schedule of {}{} paths for a rig of {} grippers{}",
+                                            paths.size(), kind, rig.count(),
+                                            empty_path ? ", one without knots" : ""));
   };
   check(schedule.paths, size_t(rig.count()), "");
   check(schedule.plane_paths, rig.driven == Driven::xyz ? size_t(rig.count()) : 0, " in-plane");
@@ -170,10 +170,10 @@ std::string plane_text(const Schedule& schedule, size_t gripper) {
   if (schedule.plane_paths.empty()) return "";
   std::string text;
   for (const PlaneKnot& knot : schedule.plane_paths[gripper]) {
-    text += std::string(text.empty() ? "" : ", ") + "{\"time\": " + json_number(knot.time) +
-            ", \"x\": " + json_number(knot.xy.x()) + ", \"y\": " + json_number(knot.xy.y()) + "}";
+    text += fmt::format("{}{{\"time\": {}, \"x\": {}, \"y\": {}}}", text.empty() ? "" : ", ",
+                        json_number(knot.time), json_number(knot.xy.x()), json_number(knot.xy.y()));
   }
-  return ", \"plane_knots\": [" + text + "]";
+  return fmt::format(", \"plane_knots\": [{}]", text);
 }
 
 std::string release_text(const Schedule& schedule, size_t gripper) {
@@ -191,14 +191,14 @@ bool ever_released(const Schedule& schedule) {
 void write_schedule(const std::filesystem::path& file, const Schedule& schedule, const RigOptions& rig) {
   check_fits(schedule, rig);
   // Written by hand, one gripper per line: a person can read and edit it.
-  std::string text = "{\n  \"format\": \"" + std::string(kScheduleFormat) +
-                     "\",\n  \"blend_time\": " + json_number(schedule.blend_time) + ",\n  \"grippers\": [\n";
+  std::string text = fmt::format("{{\n  \"format\": \"{}\",\n  \"blend_time\": {},\n  \"grippers\": [\n",
+                                 kScheduleFormat, json_number(schedule.blend_time));
   for (size_t g = 0; g < schedule.paths.size(); ++g) {
-    text += "    {\"gripper\": " + rig.name(int(g)) + ", \"knots\": [";
+    text += fmt::format("    {{\"gripper\": {}, \"knots\": [", rig.name(int(g)));
     for (size_t k = 0; k < schedule.paths[g].size(); ++k) {
       const Knot& knot = schedule.paths[g][k];
-      text += std::string(k > 0 ? ", " : "") + "{\"time\": " + json_number(knot.time) +
-              ", \"z\": " + json_number(knot.z) + "}";
+      text += fmt::format("{}{{\"time\": {}, \"z\": {}}}", k > 0 ? ", " : "", json_number(knot.time),
+                          json_number(knot.z));
     }
     text += "]" + plane_text(schedule, g) + release_text(schedule, g);
     text += g + 1 < schedule.paths.size() ? "},\n" : "}\n";
@@ -225,11 +225,11 @@ void write_schedule_csv(const std::filesystem::path& file, const Schedule& sched
   if (!(rate > 0))
     throw std::invalid_argument("write_schedule_csv: the rate must be > 0, it is " + exact(rate));
   const bool plane = !schedule.plane_paths.empty(), suction = ever_released(schedule);
-  std::string text = std::string("gripper_i,gripper_j,time_s,z_m,vz_m_per_s") +
-                     (plane ? ",x_m,y_m,vx_m_per_s,vy_m_per_s" : "") + (suction ? ",suction" : "") + "\n";
+  std::string text = fmt::format("gripper_i,gripper_j,time_s,z_m,vz_m_per_s{}{}\n",
+                                 plane ? ",x_m,y_m,vx_m_per_s,vy_m_per_s" : "", suction ? ",suction" : "");
   for (size_t g = 0; g < schedule.paths.size(); ++g) {
     const auto [i, j] = rig.indices(int(g));
-    const std::string name = std::to_string(i) + "," + std::to_string(j) + ",";
+    const std::string name = fmt::format("{},{},", i, j);
     for (const double time : sample_times(schedule, g, rate)) {
       const Command command = schedule.command(int(g), time);
       std::vector<double> values{time, command.z, command.vz};

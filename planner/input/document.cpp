@@ -1,5 +1,7 @@
 #include "planner/input/document.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -27,7 +29,7 @@ std::optional<std::string> file_text(const std::filesystem::path& file, std::str
   std::ostringstream text;
   if (stream) text << stream.rdbuf();
   if (!stream.is_open() || stream.bad()) {
-    fault = std::string("cannot be read: ") + (errno != 0 ? std::strerror(errno) : "unknown reason");
+    fault = fmt::format("cannot be read: {}", errno != 0 ? std::strerror(errno) : "unknown reason");
     return std::nullopt;
   }
   return text.str();
@@ -62,7 +64,7 @@ std::string set_at(json& root, const std::vector<std::string>& parts, json value
           !part.empty() && part.size() < 9 && part.find_first_not_of("0123456789") == part.npos;
       const size_t index = digits ? std::stoul(part) : std::numeric_limits<size_t>::max();
       if (index >= here->size()) {
-        return "\"" + part + "\" is no index of a list with " + std::to_string(here->size()) + " entries";
+        return fmt::format("\"{}\" is no index of a list with {} entries", part, here->size());
       }
       here = &(*here)[index];
     } else if (here->is_object() || here->is_null()) {
@@ -72,7 +74,7 @@ std::string set_at(json& root, const std::vector<std::string>& parts, json value
       }
       here = &(*here)[part];
     } else {
-      return "\"" + part + "\" lies below a value that is no section";
+      return fmt::format("\"{}\" lies below a value that is no section", part);
     }
   }
   *here = std::move(value);
@@ -114,13 +116,13 @@ bool InputDocument::load(const std::filesystem::path& file, const std::string& p
     if (prefix.empty()) {
       errors_.push_back({file.string(), 0, "", fault});
     } else {
-      errors_.push_back(error_at(prefix, "the file \"" + file.string() + "\" " + fault));
+      errors_.push_back(error_at(prefix, fmt::format("the file \"{}\" {}", file.string(), fault)));
     }
     return false;
   }
   ParsedText parsed = parse_json_text(*text);
   for (const TextFault& at : parsed.faults) {
-    const std::string column = at.column > 0 ? "column " + std::to_string(at.column) + ": " : "";
+    const std::string column = at.column > 0 ? fmt::format("column {}: ", at.column) : "";
     errors_.push_back({file.string(), at.line, at.pointer, column + at.message});
   }
   sources_.push_back({prefix, file.string(), std::move(parsed.lines), false});

@@ -1,12 +1,14 @@
 #include "planner/input/error.hpp"
 
+#include <fmt/format.h>
+
 namespace drapeplan {
 
 std::string InputError::text() const {
-  std::string text = file;
-  if (line > 0) text += ':' + std::to_string(line);
-  if (!path.empty()) text += ": " + path;
-  return text + ": " + message;
+  std::string place = file;
+  if (line > 0) place += fmt::format(":{}", line);
+  if (!path.empty()) place += fmt::format(": {}", path);
+  return fmt::format("{}: {}", place, message);
 }
 
 }  // namespace drapeplan

@@ -1,5 +1,7 @@
 #include "planner/input/field.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace drapeplan {
@@ -13,10 +15,11 @@ bool Range::holds(double value) const {
 std::string range_text(const Range& range, Dimension dimension) {
   const auto text = [dimension](double value) { return format_quantity(value, dimension); };
   std::string limits;
-  if (std::isfinite(range.lowest)) limits = (range.lowest_excluded ? "> " : ">= ") + text(range.lowest);
+  if (std::isfinite(range.lowest))
+    limits = fmt::format("{} {}", range.lowest_excluded ? ">" : ">=", text(range.lowest));
   if (std::isfinite(range.highest)) {
-    limits += (limits.empty() ? "" : " and ") + std::string(range.highest_excluded ? "< " : "<= ") +
-              text(range.highest);
+    limits += fmt::format("{}{} {}", limits.empty() ? "" : " and ",
+                          range.highest_excluded ? "<" : "<=", text(range.highest));
   }
   if (range.odd) limits += ", odd";
   return limits;

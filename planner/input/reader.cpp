@@ -1,5 +1,7 @@
 #include "planner/input/reader.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "planner/base/json_text.hpp"
@@ -53,13 +55,13 @@ void FieldReader::check_keys(const Frame& frame) {
     const std::string pointer = frame.pointer + pointer_token(key);
     const auto other = frame.elsewhere.find(key);
     if (other != frame.elsewhere.end()) {
-      fail(pointer, "belongs to " + other->second + " only");
+      fail(pointer, fmt::format("belongs to {} only", other->second));
       continue;
     }
     const std::string nearest = nearest_word(key, frame.known);
-    const std::string hint =
-        nearest.empty() ? "known: " + alternatives_text(frame.known) : "did you mean \"" + nearest + "\"?";
-    add_error(pointer, "unknown key \"" + key + "\"; " + hint);
+    const std::string hint = nearest.empty() ? "known: " + alternatives_text(frame.known)
+                                             : fmt::format("did you mean \"{}\"?", nearest);
+    add_error(pointer, fmt::format("unknown key \"{}\"; {}", key, hint));
   }
 }
 
@@ -67,7 +69,7 @@ void FieldReader::check_needs(const std::string& name, const std::vector<std::st
   for (const std::string& need : needs) {
     if (document_.root().contains(need)) continue;
     const std::string pointer = frames_.back().pointer + pointer_token(name);
-    add_error(pointer, "needs the section \"" + need + "\", which is absent");
+    add_error(pointer, fmt::format("needs the section \"{}\", which is absent", need));
   }
 }
 
@@ -85,7 +87,7 @@ const json* FieldReader::find(const std::string& name, bool required, const std:
   const auto found = frame.object->find(name);
   if (found != frame.object->end()) return &*found;
   if (required) {
-    add_error(frame.pointer, "\"" + name + "\" is missing (" + doc + ")");
+    add_error(frame.pointer, fmt::format("\"{}\" is missing ({})", name, doc));
   }
   return nullptr;
 }
@@ -119,7 +121,7 @@ void FieldReader::alternative(const std::string& selector, const std::string& wo
   const bool undecided = frames_.back().failed_choices.contains(selector);
   if (selected && !undecided) return visit();
   skipping_ = true;
-  unchosen_ = undecided ? "" : "\"" + selector + "\": \"" + word + "\"";
+  unchosen_ = undecided ? "" : fmt::format("\"{}\": \"{}\"", selector, word);
   visit();
   skipping_ = false;
 }
@@ -133,7 +135,7 @@ void FieldReader::list(const ObjectList& list) {
     return fail(pointer, "expected a list [ ... ]");
   list.resize(value->size());
   for (size_t k = 0; k < value->size(); ++k) {
-    visit_object((*value)[k], pointer + '/' + std::to_string(k), [&] { list.visit(k); });
+    visit_object((*value)[k], fmt::format("{}/{}", pointer, k), [&] { list.visit(k); });
   }
 }
 

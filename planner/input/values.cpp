@@ -1,5 +1,7 @@
 #include "planner/input/values.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -35,7 +37,7 @@ struct ValueReader {
     return false;
   }
   [[nodiscard]] ValueReader at(size_t index) const {
-    return {field, fault, where + '/' + std::to_string(index)};
+    return {field, fault, fmt::format("{}/{}", where, index)};
   }
 
   bool in_range(double value) const {
@@ -50,10 +52,11 @@ struct ValueReader {
     }
     const DimensionWords& words = words_of(field.dimension);
     if (value.is_number()) {
-      return fail("a bare number has no unit; expected " + words.name + " as text, e.g. \"" + words.example +
-                  '"');
+      return fail(fmt::format("a bare number has no unit; expected {} as text, e.g. \"{}\"", words.name,
+                              words.example));
     }
-    if (!value.is_string()) return fail("expected " + words.name + " as text, e.g. \"" + words.example + '"');
+    if (!value.is_string())
+      return fail(fmt::format("expected {} as text, e.g. \"{}\"", words.name, words.example));
     std::string message;
     const std::optional<double> parsed =
         parse_quantity(value.get_ref<const std::string&>(), field.dimension, message);
@@ -84,10 +87,10 @@ struct ValueReader {
   template <class Vector>
   bool vector(const json& value, Vector& target) const {
     const auto size = size_t(target.size());
-    const std::string example = '"' + words_of(field.dimension).example + '"';
-    std::string what = "a list of " + std::to_string(size) + " quantities, e.g. [" + example;
-    for (size_t k = 1; k < size; ++k) what += ", " + example;
-    if (!list(value, size, what + "]")) return false;
+    const std::vector<std::string> examples(size, fmt::format("\"{}\"", words_of(field.dimension).example));
+    const std::string what =
+        fmt::format("a list of {} quantities, e.g. [{}]", size, fmt::join(examples, ", "));
+    if (!list(value, size, what)) return false;
     bool good = true;
     for (size_t k = 0; k < size; ++k) good = at(k).number(value[k], target[Eigen::Index(k)]) && good;
     return good;
@@ -120,7 +123,8 @@ struct ValueReader {
     index = int(found - words.begin());
     if (found != words.end()) return true;
     const std::string nearest = nearest_word(text, words);
-    return fail("unknown word; " + (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") + expected);
+    const std::string hint = nearest.empty() ? "" : fmt::format("did you mean \"{}\"? ", nearest);
+    return fail(fmt::format("unknown word; {}{}", hint, expected));
   }
 
   bool words(const json& value, const ChoiceList& target) const {
@@ -213,14 +217,15 @@ bool cell(const ValueReader& place, const json& value, const Unit& unit, double&
 bool ValueReader::table(const json& value, const Table& target) const {
   const DimensionWords& x_words = words_of(target.abscissa);
   const std::string x_unit = x_words.units[x_words.preferred].name;
-  const std::string example = "[[\"" + x_unit + "\", \"MPa\"], [0, 0], [0.5, 45.6], ...]";
+  const std::string example = fmt::format("[[\"{}\", \"MPa\"], [0, 0], [0.5, 45.6], ...]", x_unit);
   constexpr size_t kFewestRows = 3;  // units, origin, one point
   if (!value.is_array() || value.size() < kFewestRows)
     return fail("expected at least three rows, e.g. " + example);
   bool good = true;
   for (size_t row = 0; row < value.size(); ++row) {
-    const std::string what = row == 0 ? "the units of the columns, e.g. [\"" + x_unit + "\", \"MPa\"]"
-                                      : "a pair of numbers [strain, stress]";
+    const std::string what = row == 0
+                                 ? fmt::format("the units of the columns, e.g. [\"{}\", \"MPa\"]", x_unit)
+                                 : "a pair of numbers [strain, stress]";
     good = at(row).list(value[row], 2, what) && good;
   }
   if (!good) return false;

@@ -1,5 +1,7 @@
 #include "planner/reach/ipopt.hpp"
 
+#include <fmt/format.h>
+
 #include <IpIpoptApplication.hpp>
 #include <IpIpoptData.hpp>
 #include <IpTNLP.hpp>
@@ -123,7 +125,7 @@ std::string in_words(Ipopt::ApplicationReturnStatus status) {
     case Ipopt::Not_Enough_Degrees_Of_Freedom:
       return "more constraints than freedoms";
     default:
-      return "Ipopt ended with code " + std::to_string(int(status));
+      return fmt::format("Ipopt ended with code {}", int(status));
   }
 }
 

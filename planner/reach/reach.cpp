@@ -1,9 +1,10 @@
 #include "planner/reach/reach.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <random>
 
@@ -38,8 +39,7 @@ std::string check_reach(const ReachProblem& problem) {
   const RigOptions& rig = problem.rig;
   if (rig.columns < 0 || rig.rows < 0) return "negative number of grippers";
   if (int(problem.targets.size()) != rig.count()) {
-    return std::to_string(problem.targets.size()) + " targets for " + std::to_string(rig.count()) +
-           " grippers";
+    return fmt::format("{} targets for {} grippers", problem.targets.size(), rig.count());
   }
   if (rig.count() > 0 && !(rig.spacing > 0 && std::isfinite(rig.spacing)))
     return "the spacing is not positive";
@@ -193,9 +193,10 @@ ReachResult find_floors(const ReachProblem& problem, int random_starts, unsigned
   if (least_squares.solved == 0) {
     const bool feasible =
         rms.violation(least_squares.outcome.variables) * problem.rig.spacing <= kLinkTolerance;
-    return without_floors(result, feasible ? "the rig fits the mold, but the search ended early" +
-                                                 std::string(" (") + least_squares.outcome.status + ")"
-                                           : least_squares.outcome.status);
+    const std::string& status = least_squares.outcome.status;
+    return without_floors(
+        result,
+        feasible ? fmt::format("the rig fits the mold, but the search ended early ({})", status) : status);
   }
 
   from.push_back(solution);
@@ -206,8 +207,8 @@ ReachResult find_floors(const ReachProblem& problem, int random_starts, unsigned
       std::max(result.link_violation, largest_link_error(problem, joints_at(problem, other)));
 
   result.converged = true;
-  result.status = "solved; " + std::to_string(least_squares.agreed) + " of " +
-                  std::to_string(from.size() - 1) + " starts found the smallest r.m.s. distance";
+  result.status = fmt::format("solved; {} of {} starts found the smallest r.m.s. distance",
+                              least_squares.agreed, from.size() - 1);
   result.floor_rms = least_squares.value;
   result.floor_max = minimax.value;
   result.start_spread = least_squares.spread;
@@ -217,9 +218,7 @@ ReachResult find_floors(const ReachProblem& problem, int random_starts, unsigned
 }
 
 std::string millimetres(double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f mm", length * 1e3);
-  return text;
+  return fmt::format("{:.1f} mm", 1e3 * length);
 }
 
 /// What remains of the floor without joint offset, without the fixed joint or with the best interlink length,
@@ -232,24 +231,26 @@ std::string explain_causes(const ReachProblem& problem, const ReachResult& resul
   const ReachCauses& causes = result.causes;
   const double offset = problem.rig.joint_offset + problem.ply_thickness, spacing = problem.rig.spacing;
   const std::vector<Change> changes{
-      {causes.rms_flush, "joints at the mold's surface instead of " + millimetres(offset) + " above it",
+      {causes.rms_flush,
+       fmt::format("joints at the mold's surface instead of {} above it", millimetres(offset)),
        "the joint offset"},
       {causes.rms_unfixed, "no joint fixed in-plane", "the fixed joint"},
       {causes.rms_rescaled,
-       "interlinks of " + millimetres(causes.link_scale * spacing) + " instead of " + millimetres(spacing),
+       fmt::format("interlinks of {} instead of {}", millimetres(causes.link_scale * spacing),
+                   millimetres(spacing)),
        "the length of the interlinks"},
   };
   const Change* main = nullptr;
   std::string text;
   for (const Change& change : changes) {
     if (!(change.floor < result.floor_rms - kNegligible)) continue;
-    text += " With " + change.what + " the r.m.s. floor would be " + millimetres(change.floor) + ".";
+    text += fmt::format(" With {} the r.m.s. floor would be {}.", change.what, millimetres(change.floor));
     if (main == nullptr && change.floor < 0.5 * result.floor_rms) main = &change;
   }
-  if (main != nullptr) text += " So " + main->cause + " causes most of it.";
+  if (main != nullptr) text += fmt::format(" So {} causes most of it.", main->cause);
   if (causes.longest_link > causes.shortest_link + kNegligible) {
-    text += " All targets could be met only by interlinks of different lengths, " +
-            millimetres(causes.shortest_link) + " to " + millimetres(causes.longest_link) + ".";
+    text += fmt::format(" All targets could be met only by interlinks of different lengths, {} to {}.",
+                        millimetres(causes.shortest_link), millimetres(causes.longest_link));
   }
   return text;
 }
@@ -258,8 +259,9 @@ std::string explain_causes(const ReachProblem& problem, const ReachResult& resul
 std::string explain_spread(const ReachResult& result) {
   const double spread = std::max(result.start_spread, result.start_spread_max);
   if (spread <= kNegligible) return "";
-  return " The starts of the search disagree by up to " + millimetres(spread) +
-         ": a lower floor may exist, try more starts.";
+  return fmt::format(
+      " The starts of the search disagree by up to {}: a lower floor may exist, try more starts.",
+      millimetres(spread));
 }
 
 }  // namespace
@@ -273,19 +275,21 @@ ReachResult solve_reach(const ReachProblem& problem, int random_starts, unsigned
 
 std::string explain_reach(const ReachProblem& problem, const ReachResult& result) {
   if (!result.converged) {
-    std::string text = "The floor of the rig was not found: " + result.status + ".";
+    std::string text = fmt::format("The floor of the rig was not found: {}.", result.status);
     if (result.link_violation > kLinkTolerance) {
-      text += " At best an interlink's length is off by " + millimetres(result.link_violation) + ".";
+      text += fmt::format(" At best an interlink's length is off by {}.", millimetres(result.link_violation));
     }
     return text;
   }
   if (result.floor_max <= kNegligible) return "The rig can put every pad on its target.";
   const auto worst = std::max_element(result.per_gripper.begin(), result.per_gripper.end());
-  return "With its pads on the mold the rig cannot bring every one closer to its target than " +
-         millimetres(result.floor_max) + " (largest distance), nor below " + millimetres(result.floor_rms) +
-         " r.m.s., whatever the schedule. In the best r.m.s. position gripper " +
-         problem.rig.name(int(worst - result.per_gripper.begin())) + " is farthest off, by " +
-         millimetres(*worst) + "." + explain_causes(problem, result) + explain_spread(result);
+  return fmt::format(
+      "With its pads on the mold the rig cannot bring every one closer to its target than {} (largest "
+      "distance), nor below {} r.m.s., whatever the schedule. In the best r.m.s. position gripper {} is "
+      "farthest off, by {}.{}{}",
+      millimetres(result.floor_max), millimetres(result.floor_rms),
+      problem.rig.name(int(worst - result.per_gripper.begin())), millimetres(*worst),
+      explain_causes(problem, result), explain_spread(result));
 }
 
 }  // namespace drapeplan

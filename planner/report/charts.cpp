@@ -237,8 +237,8 @@ void draw_bars(Svg& svg, const std::vector<Row>& rows, const RigOptions& rig, co
                     {.fill = descent ? scale.colour(stroke.end) : "#d4dae1"}, 2.5);
       constexpr double kRoomForText = 70;
       if (width < kRoomForText) continue;
-      const std::string travel =
-          (stroke.travel < 0 ? "\u2193 " : "\u2191 ") + fixed(1000 * std::abs(stroke.travel), 0) + " mm";
+      const std::string travel = fmt::format("{} {} mm", stroke.travel < 0 ? "\u2193" : "\u2191",
+                                             fixed(1000 * std::abs(stroke.travel), 0));
       svg.text({from + 0.5 * width, y + 0.5 * pitch + 3.5}, travel,
                {.size = 10,
                 .anchor = Svg::Anchor::middle,
@@ -260,11 +260,11 @@ void draw_grid(Svg& svg, const std::vector<Row>& rows, const RigOptions& rig, co
              {.size = 11, .anchor = Svg::Anchor::middle, .colour = scale.text_colour(row.arrival())});
   }
   for (int i = 0; i < rig.columns; ++i) {
-    svg.text(corner + cell * Vector2d(i + 0.5, rig.rows) + Vector2d(0, 14), std::to_string(i + 1),
+    svg.text(corner + cell * Vector2d(i + 0.5, rig.rows) + Vector2d(0, 14), fmt::to_string(i + 1),
              {.size = 10, .anchor = Svg::Anchor::middle, .colour = ink::kSoft});
   }
   for (int j = 0; j < rig.rows; ++j) {
-    svg.text(corner + cell * Vector2d(0, rig.rows - j - 0.5) + Vector2d(-6, 4), std::to_string(j + 1),
+    svg.text(corner + cell * Vector2d(0, rig.rows - j - 0.5) + Vector2d(-6, 4), fmt::to_string(j + 1),
              {.size = 10, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
   }
 }

@@ -1,5 +1,7 @@
 #include "planner/report/contour.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 
@@ -35,7 +37,7 @@ std::vector<Point> part_above(const Triangles& t, const std::array<int, 3>& corn
 }
 
 std::string coordinates(const Point& p) {
-  return fixed(p[0] / kGrid, 2).append(" ").append(fixed(p[1] / kGrid, 2));
+  return fmt::format("{} {}", fixed(p[0] / kGrid, 2), fixed(p[1] / kGrid, 2));
 }
 
 /// Joins directed edges to closed loops; every point has as many edges in as out, so each walk returns to its
@@ -48,13 +50,13 @@ std::string loops(const std::map<Edge, int>& edges) {
   std::string path;
   for (auto& [start, ends] : next) {
     while (!ends.empty()) {
-      path.append("M").append(coordinates(start));
+      path += "M" + coordinates(start);
       for (Point at = start;;) {
         std::vector<Point>& out = next[at];
         const Point to = out.back();
         out.pop_back();
         if (to == start) break;
-        path.append("L").append(coordinates(to));
+        path += "L" + coordinates(to);
         at = to;
       }
       path += "Z";

@@ -69,7 +69,7 @@ std::string score_row(const ReportRow& row, const BestTexts& best) {
   for (size_t k = 0; k < kScoreParts.size(); ++k) {
     const std::string value = value_text(kScoreParts[k], row.score);
     const bool stands_out = counts(row, kScoreParts[k]) && best[k] == value;
-    text += (stands_out ? "<td class=\"best\">" : "<td>") + value + "</td>";
+    text += fmt::format("<td{}>{}</td>", stands_out ? " class=\"best\"" : "", value);
   }
   return text + "</tr>\n";
 }
@@ -101,7 +101,7 @@ std::string paragraph(const std::string& text, const std::string& style = "") {
 std::string pairs(const std::string& title, const std::vector<std::pair<std::string, std::string>>& entries,
                   bool code) {
   if (entries.empty()) return "";
-  std::string text = "<h2>" + title + "</h2>\n<table class=\"pairs\">\n";
+  std::string text = fmt::format("<h2>{}</h2>\n<table class=\"pairs\">\n", title);
   for (const auto& [name, value] : entries) {
     const std::string escaped = escape_markup(name);
     text += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n",

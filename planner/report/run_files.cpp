@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <stdexcept>
 
 #include "planner/base/text.hpp"
@@ -68,9 +69,7 @@ std::vector<std::string> notes_of(const DrapeProblem& problem) {
 }  // namespace
 
 std::string terms_line(const Model& model) {
-  std::string line;
-  for (const std::string& name : model.term_names()) line += (line.empty() ? "[" : " [") + name + "]";
-  return line;
+  return fmt::format("[{}]", fmt::join(model.term_names(), "] ["));
 }
 
 DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
@@ -93,6 +92,38 @@ DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const st
     panel.largest_offset = {offset.on_edge, offset.on_boundary};
   }
   return panel;
+}
+
+void write_net(const std::filesystem::path& folder, const Net& net) {
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  const size_t columns = net.u.size(), rows = net.v.size();
+  Mesh mesh;
+  Snapshot place;
+  place.position = net.nodes;
+  place.shear = shear_field(net);
+  std::vector<double> shear(net.nodes.size(), 0.0), cells(net.nodes.size(), 0.0);
+  for (size_t n = 0; n < net.nodes.size(); ++n)
+    mesh.rest.emplace_back(net.u[n % columns], net.v[n / columns]);
+  for (size_t j = 0; j + 1 < rows; ++j) {
+    for (size_t i = 0; i + 1 < columns; ++i) {
+      const size_t at = i + j * columns;
+      const std::array<size_t, 4> corners{at, at + 1, at + 1 + columns, at + columns};
+      mesh.quads.push_back({int(corners[0]), int(corners[1]), int(corners[2]), int(corners[3])});
+      for (const size_t corner : corners) {
+        shear[corner] += place.shear[i + j * (columns - 1)];
+        ++cells[corner];
+      }
+    }
+  }
+  std::string text = "u,v,x,y,z,shear_deg\n";
+  for (size_t n = 0; n < net.nodes.size(); ++n) {
+    const Eigen::Vector3d& p = net.nodes[n];
+    for (const double value : {mesh.rest[n].x(), mesh.rest[n].y(), p.x(), p.y(), p.z()})
+      text += exact(value) + ',';
+    text += exact(kDegrees * shear[n] / cells[n]) + '\n';
+  }
+  write_text(folder / "net.csv", text);
+  write_vtu(folder / "net.vtu", mesh, place);
 }
 
 void write_frames(const std::filesystem::path& folder, const std::string& name, const Mesh& mesh,

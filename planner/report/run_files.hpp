@@ -17,6 +17,10 @@ std::string terms_line(const Model& model);
 DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
                        const std::string& title);
 
+/// Writes a mapped net: net.csv, one row `u,v,x,y,z,shear_deg` per node [m, deg], shear as the mean of the
+/// cells around it; and net.vtu for ParaView.
+void write_net(const std::filesystem::path& folder, const Net& net);
+
 /// Writes `frames` as NAME_000.vtu ... with the collection NAME.pvd.
 void write_frames(const std::filesystem::path& folder, const std::string& name, const Mesh& mesh,
                   const std::vector<Snapshot>& frames, const Mold* mold, double thickness);

@@ -1,9 +1,9 @@
 #include "planner/report/svg.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "planner/base/text.hpp"
@@ -18,14 +18,15 @@ std::string number(double value) {
 }
 
 std::string attribute(const std::string& name, const std::string& value) {
-  return std::string(" ").append(name).append("=\"").append(value).append("\"");
+  return fmt::format(" {}=\"{}\"", name, value);
 }
 
 std::string attributes(const Svg::Style& style) {
   std::string text = attribute("fill", style.fill.empty() ? "none" : style.fill);
   if (!style.stroke.empty()) {
-    text += attribute("stroke", style.stroke) + attribute("stroke-width", number(style.width)) +
-            attribute("stroke-linejoin", "round") + attribute("stroke-linecap", "round");
+    text +=
+        fmt::format(" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" stroke-linecap=\"round\"",
+                    style.stroke, number(style.width));
   }
   if (!style.dash.empty()) text += attribute("stroke-dasharray", style.dash);
   if (style.opacity < 1) text += attribute("opacity", number(style.opacity));
@@ -46,12 +47,9 @@ std::string oklch(double lightness, double chroma, double hue) {
   const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
   const double m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
   const double s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
-  std::array<char, 8> text;
-  std::snprintf(text.data(), text.size(), "#%02x%02x%02x",
-                srgb_byte(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s) & 0xff,
-                srgb_byte(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s) & 0xff,
-                srgb_byte(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s) & 0xff);
-  return text.data();
+  return fmt::format("#{:02x}{:02x}{:02x}", srgb_byte(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+                     srgb_byte(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+                     srgb_byte(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s));
 }
 
 }  // namespace
@@ -85,69 +83,66 @@ int decimals_of(double step) {
 }
 
 Svg::Svg(double width, double height, const std::string& title) {
-  body_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + number(width) + "\" height=\"" +
-          number(height) + "\" viewBox=\"0 0 " + number(width) + " " + number(height) +
-          "\" font-family=\"Inter, 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif\">\n<title>" +
-          escape_markup(title) + "</title>\n";
+  body_ = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
+      "font-family=\"Inter, 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif\">\n"
+      "<title>{2}</title>\n",
+      number(width), number(height), escape_markup(title));
   rectangle({0, 0}, {width, height}, {.fill = "#ffffff"});
 }
 
 void Svg::line(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Style& style) {
-  body_ += "<line" + attribute("x1", number(a.x())) + attribute("y1", number(a.y())) +
-           attribute("x2", number(b.x())) + attribute("y2", number(b.y())) + attributes(style) + "/>\n";
+  body_ += fmt::format("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\"{}/>\n", number(a.x()), number(a.y()),
+                       number(b.x()), number(b.y()), attributes(style));
 }
 
 void Svg::polyline(const std::vector<Eigen::Vector2d>& points, const Style& style) {
   std::string places;
   for (const auto& p : points) {
-    places.append(places.empty() ? "" : " ").append(number(p.x())).append(",").append(number(p.y()));
+    places += fmt::format("{}{},{}", places.empty() ? "" : " ", number(p.x()), number(p.y()));
   }
-  body_ += "<polyline" + attribute("points", places) + attributes(style) + "/>\n";
+  body_ += fmt::format("<polyline points=\"{}\"{}/>\n", places, attributes(style));
 }
 
 void Svg::rectangle(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, const Style& style,
                     double radius) {
-  body_ += "<rect" + attribute("x", number(corner.x())) + attribute("y", number(corner.y())) +
-           attribute("width", number(size.x())) + attribute("height", number(size.y()));
-  if (radius > 0) body_ += attribute("rx", number(radius));
-  body_ += attributes(style) + "/>\n";
+  body_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"{}{}/>\n", number(corner.x()),
+                       number(corner.y()), number(size.x()), number(size.y()),
+                       radius > 0 ? attribute("rx", number(radius)) : "", attributes(style));
 }
 
 void Svg::circle(const Eigen::Vector2d& centre, double radius, const Style& style) {
-  body_ += "<circle" + attribute("cx", number(centre.x())) + attribute("cy", number(centre.y())) +
-           attribute("r", number(radius)) + attributes(style) + "/>\n";
+  body_ += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"{}/>\n", number(centre.x()), number(centre.y()),
+                       number(radius), attributes(style));
 }
 
 void Svg::path(const std::string& data, const Style& style) {
-  body_ += "<path" + attribute("d", data) + attributes(style) + "/>\n";
+  body_ += fmt::format("<path d=\"{}\"{}/>\n", data, attributes(style));
 }
 
 void Svg::text(const Eigen::Vector2d& place, const std::string& text, const TextStyle& style) {
   const char* anchor = style.anchor == Anchor::start    ? "start"
                        : style.anchor == Anchor::middle ? "middle"
                                                         : "end";
-  std::string common = attribute("x", number(place.x())) + attribute("y", number(place.y())) +
-                       attribute("font-size", number(style.size)) + attribute("text-anchor", anchor);
+  const std::string x = number(place.x()), y = number(place.y()), content = escape_markup(text);
+  std::string common =
+      fmt::format("x=\"{}\" y=\"{}\" font-size=\"{}\" text-anchor=\"{}\"", x, y, number(style.size), anchor);
   if (style.bold) common += attribute("font-weight", "600");
-  if (style.turn != 0) {
-    const std::string about = number(style.turn) + " " + number(place.x()) + " " + number(place.y());
-    common += attribute("transform", std::string("rotate(").append(about).append(")"));
-  }
-  const std::string content = std::string(">").append(escape_markup(text)).append("</text>\n");
+  if (style.turn != 0) common += fmt::format(" transform=\"rotate({} {} {})\"", number(style.turn), x, y);
   // The rim is a text of its own below the letters: `paint-order` is not known to every renderer.
   if (style.halo) {
-    body_ += "<text" + common +
-             " fill=\"#ffffff\" stroke=\"#ffffff\" stroke-width=\"3.5\" stroke-linejoin=\"round\"" +
-             attribute("opacity", "0.9") + content;
+    body_ += fmt::format(
+        "<text {} fill=\"#ffffff\" stroke=\"#ffffff\" stroke-width=\"3.5\" stroke-linejoin=\"round\" "
+        "opacity=\"0.9\">{}</text>\n",
+        common, content);
   }
-  body_ += "<text" + common + attribute("fill", style.colour) + content;
+  body_ += fmt::format("<text {} fill=\"{}\">{}</text>\n", common, style.colour, content);
 }
 
 void Svg::open_window(const Eigen::Vector2d& corner, const Eigen::Vector2d& size) {
   // A nested document clips without needing an id.
-  body_ += "<svg" + attribute("x", number(corner.x())) + attribute("y", number(corner.y())) +
-           attribute("width", number(size.x())) + attribute("height", number(size.y())) +
-           attribute("overflow", "hidden") + ">\n";
+  body_ += fmt::format("<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" overflow=\"hidden\">\n",
+                       number(corner.x()), number(corner.y()), number(size.x()), number(size.y()));
 }
 
 void Svg::close_window() {

@@ -72,16 +72,19 @@ std::string grid(const std::vector<Eigen::Vector3d>& points, const std::vector<s
   }
   const std::vector<std::uint8_t> types(cells.size(), kVtkQuad);
   return fmt::format(
-             "<?xml version=\"1.0\"?>\n"
-             "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
-             "header_type=\"UInt64\">\n"
-             "  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n      <Points>\n",
-             points.size(), cells.size()) +
-         vectors("points", points) + "      </Points>\n      <Cells>\n" +
-         data_array<std::int64_t>("connectivity", 1, connectivity) +
-         data_array<std::int64_t>("offsets", 1, offsets) + data_array<std::uint8_t>("types", 1, types) +
-         "      </Cells>\n      <PointData>\n" + point_data + "      </PointData>\n      <CellData>\n" +
-         cell_data + "      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n"
+      "  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n"
+      "      <Points>\n{}      </Points>\n"
+      "      <Cells>\n{}{}{}      </Cells>\n"
+      "      <PointData>\n{}      </PointData>\n"
+      "      <CellData>\n{}      </CellData>\n"
+      "    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n",
+      points.size(), cells.size(), vectors("points", points),
+      data_array<std::int64_t>("connectivity", 1, connectivity),
+      data_array<std::int64_t>("offsets", 1, offsets), data_array<std::uint8_t>("types", 1, types),
+      point_data, cell_data);
 }
 
 void check_size(const char* field, size_t size, size_t expected, bool may_be_empty) {

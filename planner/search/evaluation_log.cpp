@@ -85,7 +85,7 @@ std::string header_line(std::uint64_t case_hash) {
 std::uint64_t hash_of_header(const std::string& line) {
   const json header = checked_json(line);
   if (header.at("format") != kFormat)
-    throw std::invalid_argument("the format is not " + std::string(kFormat));
+    throw std::invalid_argument(fmt::format("the format is not {}", kFormat));
   return from_hex(header.at("case_hash"));
 }
 

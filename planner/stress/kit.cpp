@@ -44,10 +44,6 @@ class TemporaryFile {
 
 }  // namespace
 
-std::string number_text(double value) {
-  return fmt::format("{:.3g}", value);
-}
-
 RunRequest request_of(const StressSetup& setup) {
   RunRequest request;
   request.schedule = setup.schedule ? &*setup.schedule : nullptr;
@@ -138,7 +134,7 @@ StressSetup from_case(const std::string& text, const std::vector<std::string>& o
   const CaseReading reading = read_case(file.path(), overrides);
   std::string errors;
   for (const InputError& error : reading.errors)
-    errors += (errors.empty() ? "" : "; ") + error.path + ": " + error.message;
+    errors += fmt::format("{}{}: {}", errors.empty() ? "" : "; ", error.path, error.message);
   if (!errors.empty()) throw std::invalid_argument(errors);
   const Case& definition = reading.definition;
   StressSetup setup;

@@ -14,9 +14,6 @@ namespace drapeplan {
 inline constexpr double kGravity = 9.81;  // [m/s^2]
 inline constexpr double kDegree = 0.017453292519943295;
 
-/// Three digits at most, for names.
-std::string number_text(double value);
-
 /// Lists of scenes, one function per file.
 void add_shear_scenes(std::vector<StressScene>& scenes);
 void add_sheet_scenes(std::vector<StressScene>& scenes);

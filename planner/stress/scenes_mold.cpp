@@ -63,7 +63,7 @@ StressScene incline_scene(std::string group, std::string name, double degrees, d
 void add_friction(Scenes& scenes) {
   for (const double coefficient : {0.0, 0.3, 0.5, 0.7, 1.5, 100.0, 1000.0})
     scenes.push_back(
-        incline_scene("friction", "30 deg, coefficient " + number_text(coefficient), 30, coefficient));
+        incline_scene("friction", fmt::format("30 deg, coefficient {:.3g}", coefficient), 30, coefficient));
   scenes[scenes.size() - 2].fast = true;
   scenes.push_back(
       incline_scene("friction", "34.9 deg, coefficient 0.7: below the limit of 34.99", 34.9, 0.7));
@@ -131,7 +131,7 @@ Mold parabola(double radius, double half, bool crest = true) {
 void add_curvature(Scenes& scenes) {
   constexpr double kCell = 0.01;
   for (const double cells : {20.0, 5.0, 2.0}) {
-    const std::string radius = "radius of " + number_text(cells) + " elements";
+    const std::string radius = fmt::format("radius of {:.3g} elements", cells);
     scenes.push_back(fall_scene("curvature", "crest, " + radius, {parabola(cells * kCell, 0.3)}));
     scenes.push_back(
         fall_scene("curvature", "trough, " + radius, {parabola(cells * kCell, 0.3, false), 0.1}));
@@ -154,7 +154,7 @@ Mold plateau() {
 void add_contact_stiffness(Scenes& scenes) {
   for (const double stiffness : {1e-4, 1.0, 100.0}) {
     StressScene scene =
-        incline_scene("settings", "contact stiffness " + number_text(stiffness) + ", incline", 30, 0.7);
+        incline_scene("settings", fmt::format("contact stiffness {:.3g}, incline", stiffness), 30, 0.7);
     scene.build = [stiffness] {
       StressSetup setup = incline({});
       setup.scene.options.contact_stiffness = stiffness;
@@ -175,7 +175,7 @@ void add_walls(Scenes& scenes) {
   scenes.back().says = "inside the mold";
   for (const double degrees : {84.0, 86.0, 89.9}) {
     scenes.push_back(
-        incline_scene("steep walls", "laid on a plane of " + number_text(degrees) + " deg", degrees, 0));
+        incline_scene("steep walls", fmt::format("laid on a plane of {:.3g} deg", degrees), degrees, 0));
     if (degrees < 84.2) continue;
     scenes.back().otherwise = Verdict::refused;
     scenes.back().says = "steep";
@@ -187,7 +187,7 @@ void add_walls(Scenes& scenes) {
 
 void add_edges(Scenes& scenes) {
   const auto extent = [](const std::string& half) {
-    return "mold.extent=[[\"-" + half + "\",\"" + half + "\"],[\"-" + half + "\",\"" + half + "\"]]";
+    return fmt::format("mold.extent=[[\"-{0}\",\"{0}\"],[\"-{0}\",\"{0}\"]]", half);
   };
   scenes.push_back({"mold edge", "edge inside the ply", [=] { return incline({extent("10 mm")}); }, nullptr,
                     Verdict::refused, "extent"});
@@ -205,11 +205,11 @@ void add_edges(Scenes& scenes) {
 void add_starts(Scenes& scenes) {
   const auto level = [](const std::string& height) {
     return std::vector<std::string>{"ply.start=\"level\"", "mold.angle=\"0 deg\"",
-                                    "start_height=\"" + height + "\""};
+                                    fmt::format("start_height=\"{}\"", height)};
   };
   for (const std::string height : {"0.15 mm", "0.1 mm", "0 mm", "-0.2 mm"}) {
     const double deep = 1.5e-4 - std::stod(height) * 1e-3;
-    scenes.push_back({"start", "underside " + number_text(1e3 * deep) + " mm in the mold",
+    scenes.push_back({"start", fmt::format("underside {:.3g} mm in the mold", 1e3 * deep),
                       [=] { return incline(level(height)); },
                       [](const StressRun& run) {
                         return std::vector{near("support over weight", support_over_weight(run), 1, 0.01)};

@@ -1,4 +1,6 @@
 // Numerical settings: mass scaling, the step, contact and hourglass stiffness.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "planner/stress/kit.hpp"
@@ -20,16 +22,16 @@ void add_mass(Scenes& scenes) {
   for (const double scaling : {1.0, 1e1, 1e2, 1e3, 1e4, 1e5}) {
     StripSetup strip;
     strip.options.mass_scaling = scaling;
-    scenes.push_back(strip_scene("mass scaling", "x " + number_text(scaling) + ": sag", strip));
+    scenes.push_back(strip_scene("mass scaling", fmt::format("x {:.3g}: sag", scaling), strip));
     scenes.back().fast = scaling == 1e5;
   }
   for (const double scaling : {2.0, 4.0, 8.0}) {
     StripSetup strip;
     strip.options.fibre_mass_scaling = scaling;
-    scenes.push_back(strip_scene("mass scaling", "fibre mass x " + number_text(scaling) + ": sag", strip));
+    scenes.push_back(strip_scene("mass scaling", fmt::format("fibre mass x {:.3g}: sag", scaling), strip));
   }
   for (const double scaling : {1.0, 1e3, 1e5}) {
-    scenes.push_back(drape_scene("mass scaling", "x " + number_text(scaling) + ": drape",
+    scenes.push_back(drape_scene("mass scaling", fmt::format("x {:.3g}: drape", scaling),
                                  [scaling](StressSetup& s) { s.scene.options.mass_scaling = scaling; }));
     if (scaling < 1e3) continue;
     // Too heavy to come to rest in time: it must lie where the light one lies, or the ratio of energies that
@@ -39,7 +41,7 @@ void add_mass(Scenes& scenes) {
       FemOptions light = run.setup.scene.options;
       light.mass_scaling = 4;
       const double ratio = run.result.summary.largest_kinetic_ratio;
-      const std::string words = ratio > 1 ? "told by a kinetic ratio of " + number_text(ratio) + "; " : "";
+      const std::string words = ratio > 1 ? fmt::format("told by a kinetic ratio of {:.3g}; ", ratio) : "";
       return std::vector{
           at_most(words + "apart from mass x 4 [m]", apart_from(run, light), ratio > 1 ? 0.01 : 1e-3)};
     };
@@ -49,7 +51,7 @@ void add_mass(Scenes& scenes) {
   }
   for (const double scaling : {2.0, 4.0, 8.0}) {
     scenes.push_back(
-        drape_scene("mass scaling", "fibre mass x " + number_text(scaling) + ": drape held by interlinks",
+        drape_scene("mass scaling", fmt::format("fibre mass x {:.3g}: drape held by interlinks", scaling),
                     [scaling](StressSetup& s) { s.scene.options.fibre_mass_scaling = scaling; }));
     scenes.back().otherwise = Verdict::stopped;
     scenes.back().says = "lower fibre_mass_scaling";
@@ -67,21 +69,21 @@ void add_mass(Scenes& scenes) {
 void add_steps(Scenes& scenes) {
   for (const double share : {0.5, 0.9, 0.95, 0.99, 1.0}) {
     scenes.push_back(
-        strip_scene("step", number_text(share) + " of the estimate: woven strip", woven_strip(share)));
+        strip_scene("step", fmt::format("{:.3g} of the estimate: woven strip", share), woven_strip(share)));
     scenes.back().bisect = share == 0.9;
     scenes.back().fast = share == 0.95;
     // Bulk viscosity leaves no window of growth up to 0.95 (tests/bench/fem.md).
     if (share > 0.95) scenes.back().otherwise = Verdict::stopped, scenes.back().says = "unstable";
-    scenes.push_back(drape_scene("step", number_text(share) + " of the estimate: drape",
+    scenes.push_back(drape_scene("step", fmt::format("{:.3g} of the estimate: drape", share),
                                  [share](StressSetup& s) { s.scene.options.step_safety = share; }));
     scenes.back().bisect = share == 0.9;
     scenes.back().rests = true;
   }
   for (const double share : {1.2, 1.5, 3.0}) {
     scenes.push_back(
-        strip_scene("step", number_text(share) + " of the estimate: woven strip", woven_strip(share)));
+        strip_scene("step", fmt::format("{:.3g} of the estimate: woven strip", share), woven_strip(share)));
     scenes.back().otherwise = Verdict::stopped;
-    scenes.push_back(drape_scene("step", number_text(share) + " of the estimate: drape",
+    scenes.push_back(drape_scene("step", fmt::format("{:.3g} of the estimate: drape", share),
                                  [share](StressSetup& s) { s.scene.options.step_safety = share; }));
     scenes.back().otherwise = Verdict::stopped;
   }
@@ -102,7 +104,7 @@ void add_precision(Scenes& scenes) {
     StripSetup strip;
     strip.shear = strip.transverse = strip.modulus / ratio;
     scenes.push_back(
-        strip_scene("single precision", "fibre / shear " + number_text(ratio) + ": sag", single(strip)));
+        strip_scene("single precision", fmt::format("fibre / shear {:.3g}: sag", ratio), single(strip)));
     scenes.back().fast = ratio == 1e7;
   }
   StripSetup thin, heavy;
@@ -126,7 +128,7 @@ void add_precision(Scenes& scenes) {
 void add_settings(Scenes& scenes) {
   for (const double stiffness : {1e-3, 1.0}) {
     scenes.push_back(
-        drape_scene("settings", "contact stiffness " + number_text(stiffness),
+        drape_scene("settings", fmt::format("contact stiffness {:.3g}", stiffness),
                     [stiffness](StressSetup& s) { s.scene.options.contact_stiffness = stiffness; }));
   }
   scenes.push_back(drape_scene("settings", "no contact damping",
@@ -137,12 +139,12 @@ void add_settings(Scenes& scenes) {
   scenes.push_back(drape_scene("settings", "critical contact damping",
                                [](StressSetup& s) { s.scene.options.contact_damping = 1; }));
   for (const double hourglass : {0.0, 100.0}) {
-    scenes.push_back(drape_scene("settings", "hourglass " + number_text(hourglass),
+    scenes.push_back(drape_scene("settings", fmt::format("hourglass {:.3g}", hourglass),
                                  [hourglass](StressSetup& s) { s.scene.options.hourglass = hourglass; }));
   }
   for (const double viscosity : {0.0, 1.0}) {
     scenes.push_back(
-        drape_scene("settings", "bulk viscosity " + number_text(viscosity),
+        drape_scene("settings", fmt::format("bulk viscosity {:.3g}", viscosity),
                     [viscosity](StressSetup& s) { s.scene.options.bulk_viscosity = viscosity; }));
     // Without it fibres of two stiffnesses are fed by central differences; as much as is critical is no
     // better.
@@ -150,7 +152,7 @@ void add_settings(Scenes& scenes) {
     scenes.back().says = "unstable";
   }
   for (const double alpha : {0.0, 1e6}) {
-    scenes.push_back(drape_scene("settings", "damping " + number_text(alpha) + " / s",
+    scenes.push_back(drape_scene("settings", fmt::format("damping {:.3g} / s", alpha),
                                  [alpha](StressSetup& s) { s.scene.damping = alpha; }));
     scenes.back().rests = false;
     scenes.back().judge = nullptr;  // it swings on, or has not arrived, as was asked for

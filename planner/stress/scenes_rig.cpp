@@ -1,4 +1,6 @@
 // Drapes with grippers: speeds, stops, impossible geometry, forces, releases.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -75,7 +77,7 @@ void add_cases(Scenes& scenes) {
 void add_speeds(Scenes& scenes) {
   scenes.push_back(drape_scene("gripper speed", "as usual", [](StressSetup&) {}));
   for (const double speed : {10.0, 100.0, 1e4}) {
-    scenes.push_back(drape_scene("gripper speed", "x " + number_text(speed),
+    scenes.push_back(drape_scene("gripper speed", fmt::format("x {:.3g}", speed),
                                  [speed](StressSetup& s) { s.schedule = lay_down(s.scene, 0, speed); }));
     scenes.back().fast = speed == 100;
   }

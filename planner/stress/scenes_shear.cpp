@@ -1,4 +1,6 @@
 // Sheets that shear: fibres that are far stiffer than the shear between them, and locking.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "planner/stress/kit.hpp"
@@ -76,13 +78,13 @@ void add_stiffness(Scenes& scenes) {
   for (const double ratio : {1e2, 1e3, 1e4, 1e5, 1e6, 1e7}) {
     StripSetup strip;
     strip.shear = strip.transverse = strip.modulus / ratio;
-    scenes.push_back(strip_scene("stiffness", "fibre / shear " + number_text(ratio) + ": sag", strip));
+    scenes.push_back(strip_scene("stiffness", fmt::format("fibre / shear {:.3g}: sag", ratio), strip));
     scenes.back().fast = ratio == 1e7;
     if (ratio < 1e4) continue;  // the middle still feels the edges
     const double shear = 1e9 / ratio;
     const Trellis trellis{linear_fabric(1e9, shear, 1e7), shear * 45 * kDegree / std::cos(45 * kDegree)};
     scenes.push_back(
-        trellis_scene("stiffness", "fibre / shear " + number_text(ratio) + ": trellis to 45 deg", trellis));
+        trellis_scene("stiffness", fmt::format("fibre / shear {:.3g}: trellis to 45 deg", ratio), trellis));
   }
 }
 
@@ -111,7 +113,7 @@ void add_locking(Scenes& scenes) {
   scenes.push_back(trellis_scene("locking", "no lock, 75 deg", {soft, force_at(soft, 75), kCreep}));
   for (const double degrees : {82.0, 88.0}) {
     scenes.push_back(trellis_scene("locking",
-                                   "no lock, " + number_text(degrees) + " deg: beyond what is tabulated",
+                                   fmt::format("no lock, {:.3g} deg: beyond what is tabulated", degrees),
                                    {soft, force_at(soft, degrees)}));
     scenes.back().otherwise = Verdict::stopped;
     scenes.back().says = "sheared by more than";

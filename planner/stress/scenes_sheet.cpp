@@ -59,7 +59,7 @@ void add_compression(Scenes& scenes) {
     StripSetup strip;
     strip.compression_share = share;
     scenes.push_back(
-        strip_scene("compression", "compression / tension " + number_text(share) + ": sag", strip));
+        strip_scene("compression", fmt::format("compression / tension {:.3g}: sag", share), strip));
     scenes.back().fast = share == 0;
   }
   // Without stiffness in compression nothing resists bending: a chain that hangs from its root.
@@ -79,7 +79,7 @@ void add_thickness(Scenes& scenes) {
   for (const double share : {1e-5, 1e-4, 1e-3, 1e-2, 1e-1}) {
     StripSetup strip;
     strip.thickness = share * strip.length;
-    scenes.push_back(strip_scene("thickness", "thickness / length " + number_text(share) + ": sag", strip));
+    scenes.push_back(strip_scene("thickness", fmt::format("thickness / length {:.3g}: sag", share), strip));
     scenes.back().fast = share == 1e-1;
   }
   scenes.push_back(
@@ -92,11 +92,11 @@ void add_meshes(Scenes& scenes) {
   for (const double aspect : {1.0, 10.0, 50.0}) {
     StripSetup strip;
     strip.width = strip.across * strip.length / strip.along / aspect;
-    scenes.push_back(strip_scene("mesh", "aspect " + number_text(aspect) + ", long along the warp", strip));
+    scenes.push_back(strip_scene("mesh", fmt::format("aspect {:.3g}, long along the warp", aspect), strip));
     StripSetup wide;
     wide.along = 50, wide.across = 1;
     wide.width = aspect * wide.length / wide.along;
-    scenes.push_back(strip_scene("mesh", "aspect " + number_text(aspect) + ", long along the weft", wide));
+    scenes.push_back(strip_scene("mesh", fmt::format("aspect {:.3g}, long along the weft", aspect), wide));
     scenes.back().fast = aspect == 50;
   }
   for (const double distortion : {0.1, 0.2, 0.3, 0.4}) {
@@ -104,7 +104,7 @@ void add_meshes(Scenes& scenes) {
     strip.across = 4;
     strip.distortion = distortion;
     scenes.push_back(
-        strip_scene("mesh", "distorted by " + number_text(distortion) + " of a cell", strip, 0.02));
+        strip_scene("mesh", fmt::format("distorted by {:.3g} of a cell", distortion), strip, 0.02));
   }
   StripSetup folded;
   folded.across = 4;
@@ -256,7 +256,7 @@ StressSetup steady_rate(double rate) {
 void add_rates(Scenes& scenes) {
   for (const double rate : {1e-15, 1e-9, 1e-4, 1e-1, 1e2, 1e4, 1e6}) {
     StressScene scene{
-        "rates", "pulled at " + number_text(rate) + " / s", [rate] { return steady_rate(rate); },
+        "rates", fmt::format("pulled at {:.3g} / s", rate), [rate] { return steady_rate(rate); },
         [rate](const StressRun& run) {
           const Fabric& fabric = run.setup.scene.fabric;
           const double strain = run.result.final.warp_strain[0];

@@ -126,7 +126,7 @@ void judge_run(const StressScene& scene, const StressRun& run, StressOutcome& ou
     }
   }
   for (const std::string& warning : run.setup.warnings)
-    words += (words.empty() ? "" : "; ") + ("warned: " + warning);
+    words += fmt::format("{}warned: {}", words.empty() ? "" : "; ", warning);
   const std::string failed = failed_checks(outcome.checks);
   outcome.verdict = failed.empty() ? Verdict::right : Verdict::wrong;
   outcome.reason = failed.empty() ? words : failed;
@@ -189,7 +189,7 @@ StressOutcome play_stress(const StressScene& scene) {
     play(scene, outcome);
   } catch (const std::exception& error) {
     outcome.verdict = Verdict::wrong;
-    outcome.reason = std::string("the judge failed: ") + error.what();
+    outcome.reason = fmt::format("the judge failed: {}", error.what());
   }
   outcome.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return outcome;

@@ -94,7 +94,7 @@ json stress_json(const std::vector<StressOutcome>& outcomes) {
   json scenes = json::array(), failures = json::array(), verdicts = json::object();
   for (const StressOutcome& o : outcomes) {
     scenes.push_back(outcome_json(o));
-    if (o.verdict == Verdict::wrong) failures.push_back(o.group + ": " + o.name);
+    if (o.verdict == Verdict::wrong) failures.push_back(fmt::format("{}: {}", o.group, o.name));
   }
   for (const Verdict v : {Verdict::right, Verdict::refused, Verdict::stopped, Verdict::wrong})
     verdicts[verdict_name(v)] = count(outcomes, v);
@@ -132,9 +132,10 @@ std::string stress_markdown(const std::vector<StressOutcome>& outcomes) {
   for (const StressOutcome& o : outcomes) {
     if (o.group != group) {
       group = o.group;
-      text += "\n## " + group +
-              "\n\n| scene | verdict | measured, or why | balance | kinetic | drift [m] | step |\n"
-              "|---|---|---|---|---|---|---|\n";
+      text += fmt::format(
+          "\n## {}\n\n| scene | verdict | measured, or why | balance | kinetic | drift [m] | step |\n"
+          "|---|---|---|---|---|---|---|\n",
+          group);
     }
     const std::string limit = cell(o.limit_over_estimate, " ({:.2f})");
     text += fmt::format("| {} | {} | {} | {} | {} | {} | {}{} |\n", escaped(o.name),

@@ -19,14 +19,12 @@ using nlohmann::json;
 std::string words(const Settings& settings) {
   std::string text;
   for (const auto& [path, value] : settings)
-    text += (text.empty() ? "" : ", ") + path.substr(path.find('.') + 1) + " " + value;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", path.substr(path.find('.') + 1), value);
   return text.empty() ? "the base" : text;
 }
 
 std::string row(const std::vector<std::string>& cells) {
-  std::string text = "|";
-  for (const std::string& cell : cells) text += " " + cell + " |";
-  return text + "\n";
+  return fmt::format("| {} |\n", fmt::join(cells, " | "));
 }
 
 std::string head(const std::vector<std::string>& cells) {
@@ -161,8 +159,8 @@ std::string parts_text(const Study& study) {
                short_number(1e6 * m.targets), short_number(1e6 * m.places), short_number(m.max_shear_deg)});
     std::vector<double> sizes, errors;
     for (const MappingRow& m : study.mapping) sizes.push_back(m.cell_size), errors.push_back(m.places);
-    text += "\nObserved order of the places: " + short_number(observed_order(sizes, errors, sizes.front())) +
-            "\n";
+    text += fmt::format("\nObserved order of the places: {}\n",
+                        short_number(observed_order(sizes, errors, sizes.front())));
   }
   if (!study.reach.empty()) {
     text += "\n## Reach, against the most starts\n\n" +
@@ -214,7 +212,7 @@ std::string points_csv(const Study& study) {
   for (const StudyColumn& column : columns) text += ",error_" + column.name;
   text += "\n";
   for (const StudyPoint& point : study.points) {
-    text += point.curve + ",\"" + words(point.settings) + "\"," + (point.valid() ? "1" : "0");
+    text += fmt::format("{},\"{}\",{}", point.curve, words(point.settings), point.valid() ? 1 : 0);
     for (const double value :
          {point.mean(&StudyRun::wall_seconds), point.mean(&StudyRun::cpu_seconds),
           point.mean(&StudyRun::element_updates), point.mean(&StudyRun::steps), point.mean(&StudyRun::dt),
@@ -303,15 +301,13 @@ json study_json(const Study& study) {
 }
 
 std::string study_text(const Study& study) {
-  std::string text = "# Study of " + study.case_name + "\n\n";
+  std::string text = fmt::format("# Study of {}\n\n", study.case_name);
   if (!study.points.empty()) {
-    text += reference_text(study) +
-            "## Work and precision\n\nErrors against the reference, the largest of the baselines. Times are "
-            "of one run on one core (processor time).\n\n" +
-            points_text(study) + "\n## Cheapest settings\n\n" + cheapest_text(study) +
-            "\n## Observed orders\n\n" +
-            "Of the mesh against the reference, of other knobs against their most careful value.\n\n" +
-            orders_text(study);
+    text += fmt::format(
+        "{}## Work and precision\n\nErrors against the reference, the largest of the baselines. Times are "
+        "of one run on one core (processor time).\n\n{}\n## Cheapest settings\n\n{}\n## Observed orders\n\n"
+        "Of the mesh against the reference, of other knobs against their most careful value.\n\n{}",
+        reference_text(study), points_text(study), cheapest_text(study), orders_text(study));
   }
   return text + parts_text(study) + fidelities_text(study);
 }

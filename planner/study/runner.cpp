@@ -9,8 +9,8 @@
 #include <system_error>
 
 #include "fem/core/hash.hpp"
-#include "planner/base/json_text.hpp"
 #include "mapping/error.hpp"
+#include "planner/base/json_text.hpp"
 #include "planner/base/parallel.hpp"
 #include "planner/base/statistics.hpp"
 #include "planner/drape/result_fields.hpp"
@@ -130,7 +130,7 @@ std::string StudyRunner::key_of(const StudyJob& job) const {
     text.add(std::string_view(error.what()));
     hash = text.value();
   }
-  return hex(hash) + "-" + hex(schedule_hash(job.schedule));
+  return fmt::format("{}-{}", hex(hash), hex(schedule_hash(job.schedule)));
 }
 
 StudyRun StudyRunner::measured(const StudyJob& job) const {

@@ -222,7 +222,7 @@ Case StudySubject::with(const Settings& settings) const {
   std::vector<std::string> overrides = overrides_;
   overrides.emplace_back("fidelities={}");
   for (const Settings* changes : {&at_, &settings}) {
-    for (const auto& [path, value] : *changes) overrides.push_back(path + "=" + value);
+    for (const auto& [path, value] : *changes) overrides.push_back(fmt::format("{}={}", path, value));
   }
   CaseReading reading = read_case(file_, overrides);
   const Case& definition = reading.definition;
