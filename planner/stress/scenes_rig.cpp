@@ -210,7 +210,7 @@ StressScene link_scene(const std::string& name, const std::function<void(Interli
 void add_soft_links(Scenes& scenes) {
   for (const double speed : {1.0, 100.0}) {
     scenes.push_back(link_scene(
-        "play of 0.2 mm, stops hit at speed x " + number_text(speed),
+        fmt::format("play of 0.2 mm, stops hit at speed x {:.3g}", speed),
         [](InterlinkOptions& o) {
           o.play = {2e-4, 2e-4};
         },
@@ -218,7 +218,7 @@ void add_soft_links(Scenes& scenes) {
   }
   scenes.back().fast = true;
   for (const double stiffness : {0.0, 1e3, 1e6, 1e12, 1e30}) {
-    scenes.push_back(link_scene("springs of " + number_text(stiffness) + " N/m",
+    scenes.push_back(link_scene(fmt::format("springs of {:.3g} N/m", stiffness),
                                 [stiffness](InterlinkOptions& o) { o.stiffness = stiffness; }));
   }
   scenes.push_back(link_scene("stops on springs of 1e12 N/m, play of 0.2 mm", [](InterlinkOptions& o) {
