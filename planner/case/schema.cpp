@@ -148,7 +148,7 @@ class SchemaWriter : public FieldVisitor {
     }
     if (section.flag) {
       schema["type"] = {"object", "boolean"};
-      schema["x-default"] = present;
+      schema["x-default"] = present ? "true" : "false";
     }
     const auto& files = keys_that_may_name_files();
     if (frames_.empty() && std::find(files.begin(), files.end(), section.name) != files.end()) {
@@ -257,6 +257,9 @@ std::string words(const json& list) {
 
 std::string kind_text(const json& field) {
   if (field.contains("enum")) return "one of: " + words(field["enum"]);
+  if (field.contains("anyOf"))
+    return fmt::format("{}, {} (units: {}), or two lists of rows of them", words(field["anyOf"][0]["enum"]),
+                       field["x-quantity"].get<std::string>(), words(field["x-units"]));
   if (field.contains("x-quantity")) {
     const bool list = field.value("type", json()) == "array";
     return fmt::format("{}{} (units: {})", list ? "list, each " : "", field["x-quantity"].get<std::string>(),

@@ -111,8 +111,13 @@ bool FieldReader::section(const Section& section, bool present, const std::funct
   const json* value = find(section.name, section.required, section.doc);
   if (value == nullptr) return section.flag && present;
   check_needs(section.name, section.needs);
+  const std::string pointer = frames_.back().pointer + pointer_token(section.name);
   if (section.flag && value->is_boolean()) return value->get<bool>();
-  visit_object(*value, frames_.back().pointer + pointer_token(section.name), visit);
+  if (section.flag && !value->is_object()) {
+    fail(pointer, "expected true or false, or an object { ... }");
+    return present;
+  }
+  visit_object(*value, pointer, visit);
   return true;
 }
 

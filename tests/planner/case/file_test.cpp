@@ -114,6 +114,36 @@ TEST(CaseFile, TheFlexdraperCaseHoldsWhatThePaperSays) {
             definition.fidelities.at("report").section_points);
 }
 
+TEST(CaseFile, InterlinksAreTrueOrFalseOrSayWhatTheyAre) {
+  const auto with = [](const std::string& value) {
+    return good_case(kCases / "flexdraper-quick.json", {"grippers.interlinks=" + value});
+  };
+  EXPECT_FALSE(with("false").grippers->interlinks);
+  const Case plain = with("true"), absent = with("null");
+  for (const Case& one : {plain, absent}) {
+    ASSERT_TRUE(one.grippers->interlinks);
+    EXPECT_TRUE(one.grippers->interlinks->lengths.empty() && !one.grippers->interlinks->has_play());
+  }
+  const Case same = with(R"({"length": "98 mm", "closing": [0.2, 0.5], "play": ["1 mm", "2 mm"]})");
+  EXPECT_EQ(same.grippers->interlinks->lengths, std::vector<double>(12, 0.098));
+  const double preshape = same.schedule.preshape_duration;
+  EXPECT_EQ(same.grippers->interlinks->closing, Eigen::Vector2d(0.2 * preshape, 0.5 * preshape));
+  EXPECT_EQ(same.grippers->interlinks->play, Eigen::Vector2d(0.001, 0.002));
+  const std::string rows = R"([[["97 mm", "98 mm"], ["97 mm", "98 mm"], ["97 mm", "98 mm"]],
+                               [["95 mm", "96 mm", "97 mm"], ["95 mm", "96 mm", "97 mm"]]])";
+  const Case each = with(R"({"length": )" + rows + R"(, "stiffness": "20 N/mm"})");
+  const std::vector<double> along{0.097, 0.098, 0.097, 0.098, 0.097, 0.098,
+                                  0.095, 0.096, 0.097, 0.095, 0.096, 0.097};
+  EXPECT_EQ(each.grippers->interlinks->lengths, along);
+  EXPECT_EQ(each.grippers->interlinks->stiffness, 2e4);
+  const Case mapped = with(R"({"length": "mapped"})");
+  EXPECT_TRUE(mapped.grippers->interlinks->lengths.empty()) << "known once the ply is mapped";
+  for (const Case& one : {same, each, mapped, with("false")}) {
+    const ScratchFile echo(resolved_case(one).dump());
+    EXPECT_EQ(resolved_case(good_case(echo.path)), resolved_case(one));
+  }
+}
+
 TEST(CaseFile, AnAbsentSectionIsAbsentPhysics) {
   const Case definition = good_case(kCases / "sphere-mapping.json");
   EXPECT_FALSE(definition.grippers || definition.gravity || definition.damping || definition.friction);
