@@ -42,6 +42,12 @@ struct ScheduleOptions {
   Eigen::Vector2d wave_start{0, 0};  ///< in the ply frame (u, v) [m]
 };
 
+/// A field of the case that the search may change, with the schedule.
+struct DesignVariable {
+  std::string path;      ///< as in the case file, dots between keys
+  std::string from, to;  ///< quantities with one unit, or bare numbers
+};
+
 struct OptimiseOptions {
   int wave_evaluations = 120;     ///< budget of the wave family's search
   int gripper_evaluations = 240;  ///< budget of the per-gripper search
@@ -49,6 +55,8 @@ struct OptimiseOptions {
   double shortest_stroke = 1.0;   ///< of a gripper after the preshape [s]
   double longest_sequence = 15;   ///< after the preshape [s]
   unsigned seed = 1;
+  std::vector<DesignVariable> design;
+  int design_evaluations = 120;  ///< budget of the search over design and waves together
 };
 
 /// How long interlinks are once they are closed.

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "planner/base/json_text.hpp"
+#include "planner/case/design.hpp"
 
 namespace drapeplan {
 namespace {
@@ -267,6 +268,7 @@ void check_case(const CaseFields& fields, FieldReader& reader) {
   check_grippers(fields, reader);
   check_grips(fields, reader);
   check_probes(fields, reader);
+  check_design(fields.definition.optimise.design, reader);
   if (reader.good("/optimise") && c.optimise.longest_sequence < c.optimise.shortest_stroke) {
     reader.fail("/optimise", "longest_sequence is shorter than shortest_stroke");
   }

@@ -189,6 +189,25 @@ void visit_optimise(FieldVisitor& v, OptimiseOptions& o) {
            positive()});
   v.field({"longest_sequence", &o.longest_sequence, "After the preshape", Dimension::time, positive()});
   v.field({"seed", &o.seed, "Of all random numbers"});
+  v.list(object_list(
+      "design", "Fields of the case that the search may change together with the schedule", o.design,
+      [&v](DesignVariable& variable) {
+        v.field({"path",
+                 &variable.path,
+                 "Of the field, dots between keys, e.g. grippers.joint_offset",
+                 Dimension::none,
+                 {},
+                 true});
+        v.field({"from",
+                 &variable.from,
+                 "Least value as text, with its unit if it has one",
+                 Dimension::none,
+                 {},
+                 true});
+        v.field({"to", &variable.to, "Largest value, in the same unit", Dimension::none, {}, true});
+      }));
+  v.field({"design_evaluations", &o.design_evaluations, "Budget of the search over design and waves together",
+           Dimension::none, from(0, 1e6)});
 }
 
 void visit_fem(FieldVisitor& v, FemOptions& f) {

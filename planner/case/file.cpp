@@ -9,13 +9,14 @@
 
 namespace drapeplan {
 
-CaseReading read_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  const InputDocument document(file, overrides, keys_that_may_name_files());
+namespace {
+
+CaseReading read_document(const InputDocument& document, const std::string& name) {
   CaseReading reading;
   reading.errors = document.errors();
   if (!document.root().is_object()) return reading;
   CaseFields fields;
-  fields.definition.name = file.stem().string();
+  fields.definition.name = name;
   FieldReader reader(document);
   reader.read([&fields](FieldVisitor& visitor) { visit_case(visitor, fields); });
   complete_ply(fields);
@@ -25,6 +26,16 @@ CaseReading read_case(const std::filesystem::path& file, const std::vector<std::
   if (reading.errors.empty()) complete_case(fields);
   reading.definition = std::move(fields.definition);
   return reading;
+}
+
+}  // namespace
+
+CaseReading read_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return read_document(InputDocument(file, overrides, keys_that_may_name_files()), file.stem().string());
+}
+
+CaseReading changed_case(const Case& definition, const std::vector<std::string>& overrides) {
+  return read_document(InputDocument(resolved_case(definition), overrides), definition.name);
 }
 
 nlohmann::json resolved_case(const Case& definition) {

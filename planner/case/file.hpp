@@ -21,6 +21,9 @@ struct CaseReading {
 /// bare word or quantity). Never throws for bad input.
 CaseReading read_case(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
+/// A case with overrides as above; read and checked anew.
+CaseReading changed_case(const Case& definition, const std::vector<std::string>& overrides);
+
 /// The complete case with all defaults as JSON, in the file's own format and units, self-contained (a
 /// referenced material or mold is written out). Reading it again gives the same case.
 nlohmann::json resolved_case(const Case& definition);

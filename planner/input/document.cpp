@@ -59,6 +59,7 @@ std::string set_at(json& root, const std::vector<std::string>& parts, json value
   for (size_t k = 0; k < parts.size(); ++k) {
     const std::string& part = parts[k];
     const bool last = k + 1 == parts.size();
+    if (*here == true) *here = json::object();  // a section that says no more than that it is there
     if (here->is_array()) {
       const bool digits =
           !part.empty() && part.size() < 9 && part.find_first_not_of("0123456789") == part.npos;
@@ -92,6 +93,16 @@ InputDocument::InputDocument(const std::filesystem::path& file, const std::vecto
                              const std::vector<std::string>& keys) {
   sources_.push_back({"", file.string(), {}, false});  // so that every pointer has a source
   if (!load(file, "", root_)) return;
+  complete(file.parent_path(), overrides, keys);
+}
+
+InputDocument::InputDocument(json root, const std::vector<std::string>& overrides) : root_(std::move(root)) {
+  sources_.push_back({"", "", {}, false});
+  complete({}, overrides, {});
+}
+
+void InputDocument::complete(const std::filesystem::path& folder, const std::vector<std::string>& overrides,
+                             const std::vector<std::string>& keys) {
   if (!root_.is_object()) {
     errors_.push_back(error_at("", "expected an object { ... }"));
     return;
@@ -103,7 +114,7 @@ InputDocument::InputDocument(const std::filesystem::path& file, const std::vecto
   for (const std::string& text : overrides) {
     if (names_reference(text)) apply(text);
   }
-  for (const std::string& key : keys) place_file(file.parent_path(), key);
+  for (const std::string& key : keys) place_file(folder, key);
   for (const std::string& text : overrides) {
     if (!names_reference(text)) apply(text);
   }

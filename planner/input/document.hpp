@@ -24,6 +24,9 @@ class InputDocument {
   explicit InputDocument(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
                          const std::vector<std::string>& keys = {});
 
+  /// A document that no file holds.
+  explicit InputDocument(nlohmann::json root, const std::vector<std::string>& overrides = {});
+
   [[nodiscard]] const nlohmann::json& root() const { return root_; }
   /// Faults of files, texts and overrides.
   [[nodiscard]] const std::vector<InputError>& errors() const { return errors_; }
@@ -44,6 +47,8 @@ class InputDocument {
     bool override_text = false;
   };
 
+  void complete(const std::filesystem::path& folder, const std::vector<std::string>& overrides,
+                const std::vector<std::string>& keys);
   bool load(const std::filesystem::path& file, const std::string& prefix, nlohmann::json& into);
   void place_file(const std::filesystem::path& folder, const std::string& key);
   void apply(const std::string& override_text);
