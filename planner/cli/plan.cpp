@@ -60,7 +60,7 @@ json history_json(const StagedResult& search) {
 
 json drape_json(const Drape& drape) {
   json out = summary_json(drape.run.summary);
-  out["score"] = score_json(drape.score);
+  add_scores(drape.score, drape.other, out);
   return out;
 }
 
@@ -71,7 +71,8 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
              {"link_violation", finite(problem.reach().link_violation)},
              {"status", problem.reach().status},
              {"meaning", explain_reach(problem.reach_problem(), problem.reach())}};
-  json best{{"score", score_json(result.best.score)}, {"candidate", search.best.name}};
+  json best{{"candidate", search.best.name}};
+  add_scores(result.best.score, result.best.other, best);
   if (result.best.score.valid) best["schedule"] = "schedule.json";
   return {
       {"case", problem.definition().name},

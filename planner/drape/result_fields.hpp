@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "fem/core/run_summary.hpp"
@@ -68,6 +69,12 @@ inline nlohmann::json score_json(const Score& score) {
   out["valid"] = score.valid;
   if (!score.valid) out["reason"] = score.reason;
   return out;
+}
+
+/// Adds the score that the objective takes, and the other one if there is one, to what is said of a drape.
+inline void add_scores(const Score& score, const std::optional<OtherScore>& other, nlohmann::json& out) {
+  out["score"] = score_json(score);
+  if (other) out[other->key()] = score_json(other->score);
 }
 
 /// Without the figures of what the scene does not have.
