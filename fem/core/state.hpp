@@ -74,6 +74,10 @@ struct State {
   std::vector<double> lightness;
   std::array<double, kBooks> work{};  ///< done on the moving masses since the start [J]
   RunRecord record;
+  double pressure = 0;  ///< of the press at t [Pa]
+  /// The ply when pressing began, and what the run had seen until then; empty before, and without a press.
+  VectorField unpressed_position, unpressed_director;
+  RunRecord unpressed_record;
 
   /// Time from the half-step velocities before t to those after it [s].
   [[nodiscard]] double kick_time() const { return 0.5 * (dt_before + dt); }
@@ -92,7 +96,8 @@ enum class Hashed {
 /// Hands every field of a state to `visit(field, Hashed)`.
 void visit_fields(EitherConst<State> auto& of, const auto& visit) {
   auto& [step, time, dt, dt_before, stable_dt, position, velocity, director, director_rate, anchor, stuck,
-         history, edges, pads, lightness, work, record] = of;
+         history, edges, pads, lightness, work, record, pressure, unpressed_position, unpressed_director,
+         unpressed_record] = of;
   visit(step, Hashed::all);
   visit(time, Hashed::all);
   visit(dt, Hashed::all);
@@ -110,6 +115,10 @@ void visit_fields(EitherConst<State> auto& of, const auto& visit) {
   visit(edges, Hashed::no);      // other directions give other velocities one step later
   visit(lightness, Hashed::no);  // another one gives another stable_dt when the step is next chosen
   visit(record, Hashed::no);     // what a run has seen: no motion depends on it
+  visit(pressure, Hashed::no);   // follows from the time
+  visit(unpressed_position, Hashed::no);
+  visit(unpressed_director, Hashed::no);
+  visit(unpressed_record, Hashed::no);
 }
 
 /// Hands every field of a pad to `visit(field)`.

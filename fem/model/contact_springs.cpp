@@ -16,6 +16,18 @@ constexpr double kPadShare = 0.2;
 /// fibres. With the dashpot it leaves a tenth for the rest, which is far less.
 constexpr double kBareShare = 0.5;
 
+/// Share of the thickness by which a press may sink the ply into the mold: contact springs are no softer. It
+/// costs step only beyond some 0.1 MPa.
+constexpr double kMostPressedIn = 0.1;
+
+/// Raises springs to what a press needs.
+void stiffen(const Scene& scene, ContactSprings& springs) {
+  const double needed = scene.press->pressure / (kMostPressedIn * scene.fabric.thickness);
+  const std::vector<double> area = nodal_areas(scene.mesh);
+  for (size_t k = 0; k < area.size(); ++k)
+    springs.stiffness[k] = std::max(springs.stiffness[k], needed * area[k]);
+}
+
 /// Dashpots with the stated share of the critical damping of these masses [kg].
 void set_dashpots(double share, const std::vector<double>& mass, ContactSprings& springs) {
   springs.damping.resize(mass.size());
@@ -41,6 +53,7 @@ std::unique_ptr<Term> make_scene_contact(const Scene& scene, const Shell& shell,
     for (size_t k = 0; k < own.size(); ++k)
       springs.stiffness[k] = std::min(springs.stiffness[k], most * own[k]);
   }
+  if (scene.press) stiffen(scene, springs);
   ReleasedSprings released;
   if (scene.rig) {
     released = {bounds.pad_nodes(), springs};

@@ -64,9 +64,14 @@ NodalStiffness Model::add_shell() {
 void Model::add_loads(const std::vector<double>& unscaled, const std::vector<double>& area,
                       NodalStiffness& stiffness) {
   if (scene_.gravity) terms_.push_back(make_gravity(unscaled, *scene_.gravity));
-  if (!scene_.loads) return;
-  terms_.push_back(make_loads(*scene_.loads, area));
-  terms_.back()->add_stiffness(stiffness);
+  if (scene_.loads) {
+    terms_.push_back(make_loads(*scene_.loads, area));
+    terms_.back()->add_stiffness(stiffness);
+  }
+  if (scene_.press) {
+    terms_.push_back(make_press(*scene_.press, scene_.mesh));
+    terms_.back()->add_stiffness(stiffness);
+  }
 }
 
 /// With fibre inertia, mass on edges carries the fibres of rectangles; what is left keeps its bounds. Sets
@@ -85,7 +90,9 @@ NodalStiffness Model::stiffness_without_fibres() {
     rate2 = std::max(rate2, fibres.translation[size_t(k)] / masses_.own_mass(k));
   fibre_inertia_rate_ = std::sqrt(rate2) / scene_.options.fibre_mass_scaling;
   shell_->add_stiffness_without_fibres(left);
-  if (scene_.loads) terms_.back()->add_stiffness(left);
+  for (const auto& term : terms_) {
+    if (term.get() != shell_) term->add_stiffness(left);
+  }
   return left;
 }
 
@@ -143,7 +150,7 @@ std::vector<std::string> Model::term_names() const {
 }
 
 SummaryParts Model::summary_parts() const {
-  return {.external = scene_.gravity || scene_.loads || scene_.rig || !scene_.grips.empty(),
+  return {.external = scene_.gravity || scene_.loads || scene_.press || scene_.rig || !scene_.grips.empty(),
           .contact = scene_.mold.has_value(),
           .friction = scene_.friction.has_value(),
           .damping = scene_.damping.has_value(),

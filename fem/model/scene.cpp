@@ -75,6 +75,7 @@ void check_scene(const Scene& scene) {
   if (scene.start == Start::on_mold && (!scene.mold || scene.rig))
     throw WrongInput("a ply that starts on the mold needs a mold, and no rig");
   if (scene.mold) check_mold(scene);
+  if (scene.press) check_press(*scene.press);
 }
 
 }  // namespace drapeplan

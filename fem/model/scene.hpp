@@ -11,6 +11,7 @@
 #include "fem/rig/rig.hpp"
 #include "fem/terms/grips.hpp"
 #include "fem/terms/loads.hpp"
+#include "fem/terms/press.hpp"
 #include "mapping/mold.hpp"
 
 namespace drapeplan {
@@ -30,6 +31,7 @@ struct Scene {
   std::optional<double> friction;  ///< needs a mold
   std::optional<RigOptions> rig;
   std::optional<Loads> loads;
+  std::optional<Press> press;         ///< after the schedule, or the given duration
   std::vector<int> clamped;           ///< nodes that never move or turn
   std::vector<int> pinned;            ///< nodes that never move; their directors turn
   std::vector<Grip> grips;            ///< clamps that move; no node belongs to two
@@ -39,9 +41,9 @@ struct Scene {
 /// All but the mold, which has no list of numbers of its own.
 inline auto fields_of(const Scene& of) {
   const auto& [mesh, fabric, options, position, angle, start_height, start, gravity, damping, mold, friction,
-               rig, loads, clamped, pinned, grips, rest] = of;
+               rig, loads, press, clamped, pinned, grips, rest] = of;
   return std::tie(mesh, fabric, options, position, angle, start_height, start, gravity, damping, friction,
-                  rig, loads, clamped, pinned, grips, rest);
+                  rig, loads, press, clamped, pinned, grips, rest);
 }
 
 /// Refuses parts that need others, and a mold that contact cannot follow: curved more sharply than the mesh,

@@ -105,8 +105,12 @@ double Schedule::duration() const {
   return last + blend_time;
 }
 
+double Schedule::last_stroke() const {
+  return std::max(last_change(paths), last_change(plane_paths)) + blend_time;
+}
+
 double Schedule::last_motion() const {
-  double last = std::max(last_change(paths), last_change(plane_paths)) + blend_time;
+  double last = last_stroke();
   for (const auto& time : release) last = std::max(last, time.value_or(0));
   return last;
 }

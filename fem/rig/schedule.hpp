@@ -44,6 +44,8 @@ struct Schedule {
   [[nodiscard]] bool released(int gripper, double t) const;
   /// Time of the last knot, and the blend after it [s].
   [[nodiscard]] double duration() const;
+  /// When the last commanded motion ends, its blend included [s].
+  [[nodiscard]] double last_stroke() const;
   /// When the last commanded motion or release ends; then all joints rest [s].
   [[nodiscard]] double last_motion() const;
   /// Largest speed over all grippers, vertical or in-plane [m/s].

@@ -55,16 +55,25 @@ struct Clock {
     const double scaling = model.scene().options.time_scaling;
     end = request.duration > 0 ? request.duration : (request.schedule ? request.schedule->duration() : 0);
     if (!(end > 0)) throw WrongInput("simulate: neither a schedule nor a duration is given");
+    if (model.scene().press) {
+      press = press_times(*model.scene().press, request.schedule, end) / scaling;
+      end = press->end * scaling;
+    }
     end /= scaling;
     pause = request.pause > 0 ? request.pause / scaling : end;
     motion_end = request.schedule ? request.schedule->last_motion() / scaling : 0;
     for (const Grip& grip : model.scene().grips) {
       if (!grip.velocity.isZero()) motion_end = end;
     }
+    if (press) motion_end = std::max(motion_end, press->full);
     if (!(end / model.dt() <= kMostSteps))
       throw WrongInput("simulate: the run would need more than 1e10 steps");
   }
   [[nodiscard]] bool ended(const State& state) const { return state.time >= end * (1 - kTimeSlack); }
+  /// True from the moment on at which pressing begins.
+  [[nodiscard]] bool presses(const State& state) const {
+    return press && state.time >= press->start * (1 - kTimeSlack);
+  }
   /// Number of equal parts of the run that have passed.
   [[nodiscard]] std::int64_t passed(double time, std::int64_t parts) const {
     return std::int64_t(std::floor(time / end * double(parts) * (1 + kTimeSlack)));
@@ -74,10 +83,21 @@ struct Clock {
     return passed(state.time, parts) > passed(state.time - state.dt_before, parts);
   }
   double end = 0, pause = 0, motion_end = 0;
+  std::optional<PressTimes> press;
 };
 
-/// The step from the state's positions to the next: chosen anew every `step_interval` steps, and cut at the
-/// end of the run.
+/// The pressure of now; keeps the ply as it is when pressing begins.
+void press_ply(const Model& model, const Clock& clock, State& state) {
+  if (!clock.presses(state)) return;
+  state.pressure = pressure_at(*clock.press, model.scene().press->pressure, state.time);
+  if (!state.unpressed_position.x.empty()) return;
+  state.unpressed_position = state.position;
+  state.unpressed_director = state.director;
+  state.unpressed_record = state.record;
+}
+
+/// The step from the state's positions to the next: chosen anew every `step_interval` steps, and cut where
+/// pressing begins and at the end of the run.
 void choose_step(const Model& model, const Clock& clock, State& state, Workspace& work) {
   const FemOptions& options = model.scene().options;
   if (options.step_interval == 0) {
@@ -91,7 +111,8 @@ void choose_step(const Model& model, const Clock& clock, State& state, Workspace
     state.dt = std::min(options.step_safety * state.stable_dt, model.actuator_dt());
     if (state.step == 0) state.dt_before = state.dt;
   }
-  state.dt = std::min(state.dt, clock.end - state.time);
+  const bool press_follows = clock.press && !clock.presses(state);
+  state.dt = std::min(state.dt, (press_follows ? clock.press->start : clock.end) - state.time);
 }
 
 /// True if the ply has been at rest for long enough, after all commanded motion.
@@ -109,6 +130,14 @@ State first_state(const Model& model, const RunRequest& request) {
   State state = model.flat_state(start_height(model, request));
   if (model.scene().mold) refuse_start_in_mold(model, state);
   return state;
+}
+
+std::optional<Snapshot> unpressed_snapshot(const Model& model, const State& state) {
+  if (state.unpressed_position.x.empty()) return std::nullopt;
+  State before = model.flat_state(0);
+  before.position = state.unpressed_position;
+  before.director = state.unpressed_director;
+  return take_snapshot(model, before, RigDrive{});
 }
 
 /// Why a run ended, where nothing that was seen said it.
@@ -157,6 +186,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
       ++frame;
     }
     if (model.rig()) model.rig()->let_go(state, drive);
+    if (clock.press) press_ply(model, clock, state);
     choose_step(model, clock, state, work);
     compute_forces(model, state, work);
     kick_nodes(model, state, work);
@@ -174,6 +204,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   }
 
   result.final = take_snapshot(model, state, drive);
+  result.unpressed = unpressed_snapshot(model, state);
   if (running) monitor.close(state, summary);
   if (running && clock.ended(state) && frame < frames) request.observe(result.final);
   say_why(clock, rests, work.rig.converged, state, summary);

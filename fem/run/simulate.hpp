@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "fem/core/run_summary.hpp"
 #include "fem/core/snapshot.hpp"
@@ -13,7 +14,8 @@ namespace drapeplan {
 
 struct RunRequest {
   const Schedule* schedule = nullptr;  ///< needed with a rig: all joints start at the same height
-  double duration = 0;                 ///< of the schedule's clock; 0: until the schedule ends [s]
+  /// Of the schedule's clock; 0: until the schedule ends [s]. A press comes after it.
+  double duration = 0;
   const State* from = nullptr;         ///< goes on from here instead of the flat start
   /// Stops at the first step at or after it, to be continued; 0: never [s, schedule's clock].
   double pause = 0;
@@ -26,6 +28,9 @@ struct RunResult {
   RunSummary summary;
   Snapshot final;  ///< the last state, also of a diverged run, to look at
   State state;     ///< the same, to go on from; its `record` has the extremes of the run
+  /// Where the scene has a press: the ply when pressing began, without pads; `state.unpressed_record` has the
+  /// extremes until then. Absent if the run ended before.
+  std::optional<Snapshot> unpressed;
 };
 
 /// Runs the model. A run that diverges is a result, never an exception.

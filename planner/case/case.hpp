@@ -10,6 +10,7 @@
 #include "fem/core/start.hpp"
 #include "fem/law/fabric.hpp"
 #include "fem/rig/rig.hpp"
+#include "fem/terms/press.hpp"
 #include "mapping/mold.hpp"
 #include "mapping/net.hpp"
 #include "planner/case/score_options.hpp"
@@ -91,6 +92,18 @@ struct Probe {
   Eigen::Vector2d place{0, 0};  ///< (u, v) [m]
 };
 
+/// What presses the ply down once it has been laid.
+struct PressOptions {
+  enum class Pads {
+    held,      ///< hold the ply to the end, or as long as `grippers.release_time` says
+    released,  ///< let go of it once the pressure is full, at the latest
+  };
+  enum class Objective { before, after };
+  Press load;
+  Pads pads = Pads::held;
+  Objective objective = Objective::after;  ///< which score it takes
+};
+
 /// A published result, shown beside the own ones.
 struct Reference {
   std::string name;
@@ -120,6 +133,7 @@ struct Case {
   InterlinkLength interlink_length;  ///< a mapped one becomes `grippers.interlinks.lengths` with the mapping
   Eigen::Vector2d interlink_closing{0, 1};  ///< from when to when they change, shares of the preshape
   std::string grippers_source;              ///< where their figures come from, in words
+  std::optional<PressOptions> press;
   std::optional<double> gravity;            ///< [m/s^2]
   std::optional<double> damping;            ///< mass-proportional rate alpha of the unscaled ply [1/s]
   std::optional<RestCriterion> rest;

@@ -177,6 +177,20 @@ void check_grips(const CaseFields& fields, FieldReader& reader) {
   }
 }
 
+void check_press(const CaseFields& fields, FieldReader& reader) {
+  const std::optional<PressOptions>& press = fields.definition.press;
+  if (!press || !reader.good("/press")) return;
+  if (press->load.ramp > press->load.duration) {
+    const std::string pointer = reader.good("/press/ramp") ? "/press/ramp" : "/press/duration";
+    reader.fail(pointer, "the ramp is longer than the whole press; allowed: at most its duration, " +
+                             format_quantity(press->load.duration, Dimension::time));
+  }
+  if (fields.definition.grippers) return;
+  if (press->pads == PressOptions::Pads::released) reader.fail("/press/pads", "there are no grippers to let go");
+  if (press->objective == PressOptions::Objective::before)
+    reader.fail("/press/objective", "without grippers nothing is scored");
+}
+
 void check_probes(const CaseFields& fields, FieldReader& reader) {
   std::set<std::string> names;
   for (const GripOptions& grip : fields.definition.grips) names.insert(grip.name);
@@ -267,6 +281,7 @@ void check_case(const CaseFields& fields, FieldReader& reader) {
   check_material(fields, reader);
   check_grippers(fields, reader);
   check_grips(fields, reader);
+  check_press(fields, reader);
   check_probes(fields, reader);
   check_design(fields.definition.optimise.design, reader);
   if (reader.good("/optimise") && c.optimise.longest_sequence < c.optimise.shortest_stroke) {

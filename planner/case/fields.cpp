@@ -8,6 +8,8 @@
 namespace drapeplan {
 namespace {
 
+constexpr double kLargestPressure = 1e7;  // [Pa]; ten times that of an autoclave: beyond it a unit was mistaken
+
 void visit_ply(FieldVisitor& v, CaseFields& fields) {
   Ply& ply = fields.definition.ply;
   Start& start = fields.definition.start;
@@ -147,6 +149,23 @@ void visit_schedule(FieldVisitor& v, ScheduleOptions& s) {
              "The delay counts from the start or the end of the group before"});
     v.field({"start", &s.wave_start, "Where the wave starts, in the ply (u, v)", Dimension::length});
   });
+}
+
+void visit_press(FieldVisitor& v, PressOptions& p) {
+  v.field({"pressure", &p.load.pressure, "On the ply, normal to it, towards the mold; a vacuum bag: up to 0.1 MPa",
+           Dimension::stress, from(0, kLargestPressure), true});
+  v.field({"delay", &p.load.delay, "From the end of the last stroke, or of a run without grippers, to its begin",
+           Dimension::time, from(0, 1e5), false, "absent: once the schedule is over"});
+  v.field({"duration", &p.load.duration, "From its begin to the end of the run, which ends under pressure",
+           Dimension::time, positive(1e5)});
+  v.field({"ramp", &p.load.ramp,
+           "From its begin to the full pressure, with a continuous slope; by default no faster than the fastest "
+           "stroke of a search (optimise.shortest_stroke)",
+           Dimension::time, positive(1e5)});
+  v.field({"pads", choice(p.pads, {"held", "released"}),
+           "Grippers hold the ply; or let go of it once the pressure is full, at the latest"});
+  v.field({"objective", choice(p.objective, {"before", "after"}),
+           "Which score the objective takes: of the ply before it is pressed, or after"});
 }
 
 void visit_score(FieldVisitor& v, ScoreOptions& s) {
@@ -312,6 +331,8 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
                      visit_grippers(v, rig, c);
                      v.field({"source", &c.grippers_source, "Where the figures come from"});
                    });
+  optional_section(v, {"press", "A pressure on the ply once it has been laid down", false, {"material"}},
+                   c.press, PressOptions(), [&v](PressOptions& press) { visit_press(v, press); });
   v.field({"gravity",
            &c.gravity,
            "Downwards",

@@ -60,8 +60,18 @@ json history_json(const StagedResult& search) {
 
 json drape_json(const Drape& drape) {
   json out = summary_json(drape.run.summary);
-  out["score"] = score_json(drape.score);
+  add_scores(drape.score, drape.other, out);
   return out;
+}
+
+json baselines_json(const PlanResult& result) {
+  json uniform, wave;
+  add_scores(result.uniform.score, result.uniform.other, uniform);
+  add_scores(result.wave.score, result.wave.other, wave);
+  json baselines{{"uniform", uniform["score"]}, {"wave", wave["score"]}};
+  if (result.uniform.other)
+    baselines["pressed"] = {{"uniform", uniform["score_pressed"]}, {"wave", wave["score_pressed"]}};
+  return baselines;
 }
 
 json plan_json(const DrapeProblem& problem, const PlanResult& result) {
@@ -71,7 +81,8 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
              {"link_violation", finite(problem.reach().link_violation)},
              {"status", problem.reach().status},
              {"meaning", explain_reach(problem.reach_problem(), problem.reach())}};
-  json best{{"score", score_json(result.best.score)}, {"candidate", search.best.name}};
+  json best{{"candidate", search.best.name}};
+  add_scores(result.best.score, result.best.other, best);
   if (result.best.score.valid) best["schedule"] = "schedule.json";
   return {
       {"case", problem.definition().name},
@@ -80,7 +91,7 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
       {"map",
        {{"max_shear_deg", problem.mapping().max_shear_deg},
         {"mean_shear_deg", problem.mapping().mean_shear_deg}}},
-      {"baselines", {{"uniform", score_json(result.uniform.score)}, {"wave", score_json(result.wave.score)}}},
+      {"baselines", baselines_json(result)},
       {"best", best},
       {"runs",
        {{"uniform", drape_json(result.uniform)},

@@ -211,14 +211,17 @@ Schedule schedule_of(const DrapeProblem& problem, const std::string& name) {
     throw WrongInput(fmt::format("{}: moves at up to {:g} m/s, more than grippers.max_velocity ({:g} m/s)",
                                  name, fastest, rig.max_velocity));
   }
+  let_go_pressed(problem.definition().press, reading.value);
   return std::move(reading.value);
 }
 
 std::string score_line(const Drape& drape) {
   const Score& score = drape.score;
   if (!score.valid) return fmt::format("no score: {}\n", score.reason);
-  return fmt::format("{}\npenetration {:.3f} mm; kinetic over internal energy at most {:.2g}\n",
-                     score_text(score), 1e3 * drape.run.summary.largest_penetration,
+  const std::string other =
+      drape.other ? fmt::format("{}: {}\n", drape.other->label(), score_text(drape.other->score)) : "";
+  return fmt::format("{}\n{}penetration {:.3f} mm; kinetic over internal energy at most {:.2g}\n",
+                     score_text(score), other, 1e3 * drape.run.summary.largest_penetration,
                      drape.run.summary.largest_kinetic_ratio);
 }
 
@@ -251,7 +254,7 @@ int simulate_drape(Case definition, const SimulateOptions& options) {
                                   {part.from ? &*part.from : nullptr, part.pause});
   json result = summary_json(drape.run.summary);
   add_stable_step(model, drape.run, result);
-  result["score"] = score_json(drape.score);
+  add_scores(drape.score, drape.other, result);
   result["terms"] = model.term_names();
   const std::string text = summary_text(drape.run.summary, model.node_count()) + score_line(drape);
   keep_all([&] { save(options, model, drape.run.state, &schedule); },

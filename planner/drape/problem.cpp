@@ -102,6 +102,7 @@ Scene scene_of(const Case& definition, const FemOptions& options) {
   scene.rest = definition.rest;
   scene.mold = definition.mold;
   scene.friction = definition.friction;
+  if (definition.press) scene.press = definition.press->load;
   scene.rig = definition.grippers;
   if (waits_for_mapping(definition))
     set_mapped_interlinks(definition, map_case(definition).targets, *scene.rig);
@@ -162,6 +163,7 @@ DrapeProblem::DrapeProblem(Case definition)
   frame_.options = case_.schedule;
   frame_.shortest_stroke = case_.optimise.shortest_stroke;
   frame_.longest_sequence = case_.optimise.longest_sequence;
+  frame_.press = case_.press;
 }
 
 const ReachResult& DrapeProblem::reach() const {
@@ -184,22 +186,27 @@ Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, i
   if (frames > 0) request.observe = [&drape](const Snapshot& frame) { drape.frames.push_back(frame); };
   drape.run = simulate(model, request);
   drape.gap = nodal_gaps(drape.run.final, *case_.mold, case_.material.thickness);
-  if (drape.run.summary.status != RunStatus::done) {
-    drape.score = failed_score(drape.run.summary.message);
-    return drape;
-  }
-  // A gap is never negative: a ply that ended inside the mold would look perfectly draped.
-  if (drape.run.summary.largest_penetration > case_.material.thickness) {
-    drape.score = failed_score(fmt::format("the ply came {:f} mm inside the mold: more than its thickness",
-                                           1e3 * drape.run.summary.largest_penetration));
-    return drape;
-  }
-  const RunRecord& record = drape.run.state.record;
-  const RunExtremes extremes{record.actuator_force, record.fibre_strain, record.fibre_compression,
-                             schedule.duration()};
-  drape.score = score_drape(model.scene().mesh, drape.run.final, *case_.mold, map_.boundary,
-                            case_.material.thickness, case_.score, extremes);
+  const double duration = schedule.duration();
+  drape.score = score_at(model, drape.run, drape.run.final, drape.run.state.record, duration);
+  if (!drape.run.unpressed) return drape;
+  const Score before =
+      score_at(model, drape.run, *drape.run.unpressed, drape.run.state.unpressed_record, duration);
+  const bool takes_after = case_.press->objective == PressOptions::Objective::after;
+  drape.other = OtherScore{takes_after, takes_after ? before : drape.score};
+  if (!takes_after) drape.score = before;
   return drape;
+}
+
+Score DrapeProblem::score_at(const Model& model, const RunResult& run, const Snapshot& ply,
+                             const RunRecord& seen, double duration) const {
+  if (run.summary.status != RunStatus::done) return failed_score(run.summary.message);
+  // A gap is never negative: a ply that ended inside the mold would look perfectly draped.
+  if (run.summary.largest_penetration > case_.material.thickness)
+    return failed_score(fmt::format("the ply came {:f} mm inside the mold: more than its thickness",
+                                    1e3 * run.summary.largest_penetration));
+  const RunExtremes extremes{seen.actuator_force, seen.fibre_strain, seen.fibre_compression, duration};
+  return score_drape(model.scene().mesh, ply, *case_.mold, map_.boundary, case_.material.thickness,
+                     case_.score, extremes);
 }
 
 }  // namespace drapeplan

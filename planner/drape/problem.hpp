@@ -35,7 +35,8 @@ ReachProblem reach_problem_of(const Case& definition, const std::vector<Eigen::V
 /// One simulated drape with its score.
 struct Drape {
   RunResult run;
-  Score score;
+  Score score;                      ///< the one that the objective takes
+  std::optional<OtherScore> other;  ///< where the ply was pressed
   std::vector<double> gap;       ///< per node [m]
   std::vector<Snapshot> frames;  ///< equally spaced in time, as many as were asked for
 };
@@ -84,6 +85,10 @@ class DrapeProblem {
     std::mutex mutex_;
     std::unique_ptr<const T> value_;
   };
+
+  /// The score of a run as the ply was at an instant. @param seen  the run's extremes until then.
+  [[nodiscard]] Score score_at(const Model& model, const RunResult& run, const Snapshot& ply,
+                               const RunRecord& seen, double duration) const;
 
   Case case_;
   MapResult map_;

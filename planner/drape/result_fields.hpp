@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "fem/core/run_summary.hpp"
@@ -68,6 +69,14 @@ inline nlohmann::json score_json(const Score& score) {
   out["valid"] = score.valid;
   if (!score.valid) out["reason"] = score.reason;
   return out;
+}
+
+/// The score of the ply as laid; where it was pressed, also that after pressing. Which one the objective takes, the
+/// case says.
+inline void add_scores(const Score& score, const std::optional<OtherScore>& other, nlohmann::json& out) {
+  const bool takes_after = other && other->before;
+  out["score"] = score_json(takes_after ? other->score : score);
+  if (other) out["score_pressed"] = score_json(takes_after ? score : other->score);
 }
 
 /// Without the figures of what the scene does not have.

@@ -6,7 +6,8 @@
 
 namespace drapeplan {
 
-/// Parts of the score (SI). Everything is evaluated at the end of the run, except forces and strains.
+/// Parts of the score (SI). Everything is evaluated at the end of the run, or before pressing, except forces
+/// and strains.
 struct Score {
   /// Largest gap between ply underside and mold [m].
   double max_gap = 0;
@@ -34,6 +35,16 @@ struct Score {
   /// false: the run failed, `reason` says why, `objective` is the penalty.
   bool valid = false;
   std::string reason;
+};
+
+/// Of a ply that is pressed there are two scores: the one that the objective does not take.
+struct OtherScore {
+  bool before = true;  ///< pressing; false: after it
+  Score score;
+
+  /// In results and in the evaluation log.
+  [[nodiscard]] const char* key() const { return before ? "score_before_press" : "score_after_press"; }
+  [[nodiscard]] const char* label() const { return before ? "before pressing" : "after pressing"; }
 };
 
 /// What all that writes, shows or compares a part of the score knows of it.

@@ -155,7 +155,15 @@ Schedule to_schedule(const SequenceFrame& frame, const Strokes& strokes) {
   }
   if (frame.rig.release_time)
     schedule.release.assign(schedule.paths.size(), round_time(last + *frame.rig.release_time));
+  let_go_pressed(frame.press, schedule);
   return schedule;
+}
+
+void let_go_pressed(const std::optional<PressOptions>& press, Schedule& schedule) {
+  if (!press || press->pads == PressOptions::Pads::held) return;
+  const double full = round_time(press_times(press->load, &schedule, schedule.duration()).full);
+  schedule.release.resize(schedule.paths.size());
+  for (auto& time : schedule.release) time = std::min(time.value_or(full), full);
 }
 
 std::string stretched(const SequenceFrame& frame, const Strokes& strokes) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct SequenceFrame {
   ScheduleOptions options;
   double shortest_stroke = 1.0;    ///< [s], of the searched families
   double longest_sequence = 15.0;  ///< after the preshape [s], of the searched families
+  std::optional<PressOptions> press = {};
 
   /// Height of all joints at t = 0: the highest target plus the preshape height, so that grippers only go
   /// down [m].
@@ -64,8 +66,12 @@ WaveParameters baseline_wave(const SequenceFrame& frame);
 /// `overtravel` below the target, rest until `settle` after the last stroke. Knot times increase strictly.
 /// Times are rounded to 0.1 ms and heights to 1 um, so that equal strategies from different parametrisations
 /// are equal schedules. A preshape or stroke that would need more than `rig.max_velocity` is stretched to it
-/// (see `stretched`); the starts stay. Suction ends `rig.release_time` after the last stroke.
+/// (see `stretched`); the starts stay. Suction ends `rig.release_time` after the last stroke, or when a press has
+/// taken over (see let_go_pressed).
 Schedule to_schedule(const SequenceFrame& frame, const Strokes& strokes);
+/// Where pads are released in the press, ends the suction of all grippers that still hold the ply when the
+/// pressure is full.
+void let_go_pressed(const std::optional<PressOptions>& press, Schedule& schedule);
 /// What to_schedule stretched, as a sentence; empty if nothing.
 std::string stretched(const SequenceFrame& frame, const Strokes& strokes);
 

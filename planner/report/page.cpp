@@ -31,6 +31,7 @@ th:first-child, td:first-child, .pairs td { text-align: left; }
 .pairs td { white-space: normal; padding: .25rem 1.4rem .25rem 0; vertical-align: top; }
 .best { font-weight: 700; background: #eaf4ee; }
 .reference td { color: #5b6775; font-style: italic; }
+.beside td { color: #5b6775; }
 .failed { color: #b3261e; text-align: left; white-space: normal; }
 figure { margin: 1.2rem 0 1.8rem; }
 figure svg { max-width: 100%; height: auto; }
@@ -41,7 +42,7 @@ code { font: .92em ui-monospace, "DejaVu Sans Mono", monospace; }
 using BestTexts = std::array<std::optional<std::string>, kScoreParts.size()>;
 
 bool counts(const ReportRow& row, const ScorePart& part) {
-  return row.score.valid && !row.reference && std::isfinite(row.score.*part.value);
+  return row.score.valid && !row.reference && !row.beside && std::isfinite(row.score.*part.value);
 }
 
 /// Smallest value of a part as it is shown; nothing if all rows that can be compared show the same.
@@ -60,7 +61,7 @@ std::optional<std::string> best_text(const std::vector<ReportRow>& rows, const S
 }
 
 std::string score_row(const ReportRow& row, const BestTexts& best) {
-  std::string text = row.reference ? "<tr class=\"reference\">" : "<tr>";
+  std::string text = row.reference ? "<tr class=\"reference\">" : row.beside ? "<tr class=\"beside\">" : "<tr>";
   text += fmt::format("<td>{}</td>", escape_markup(row.name));
   if (!row.score.valid && !row.reference) {
     return text + fmt::format("<td class=\"failed\" colspan=\"{}\">failed: {}</td></tr>\n",
@@ -89,7 +90,11 @@ std::string score_table(const std::vector<ReportRow>& rows) {
          "ply\u2019s underside and the mold at the end. Wrinkled area: gap above the threshold where the ply "
          "does not bridge a hollow. Boundary offset: between the ply\u2019s edge and the prescribed "
          "boundary. "
-         "Rows in italics are reported elsewhere and are not compared.</caption>\n</table></div>\n";
+         "Rows in italics are reported elsewhere and are not compared." +
+         (std::any_of(rows.begin(), rows.end(), [](const ReportRow& row) { return row.beside; })
+              ? " Grey rows are scores that the objective does not take; nor are they compared."
+              : "") +
+         "</caption>\n</table></div>\n";
 }
 
 std::string paragraph(const std::string& text, const std::string& style = "") {

@@ -14,6 +14,7 @@ struct ReportRow {
   std::string name;  ///< "wave"
   Score score;
   bool reference = false;  ///< published or measured elsewhere: shown, not compared
+  bool beside = false;     ///< the score that the objective does not take: shown, not compared
 };
 
 /// A picture with its caption. `svg` comes from picture.hpp or charts.hpp and is embedded as it is.

@@ -32,9 +32,15 @@ std::vector<ReportRow> rows_of(const DrapeProblem& problem, const PlanResult& re
     score.max_boundary_offset = reference.max_boundary_offset;
     rows.push_back({.name = reference.name, .score = score, .reference = true});
   }
-  rows.push_back({.name = "uniform", .score = result.uniform.score, .reference = false});
-  rows.push_back({.name = "wave", .score = result.wave.score, .reference = false});
-  rows.push_back({.name = "optimised", .score = result.best.score, .reference = false});
+  for (const auto& [name, drape] : {std::pair<const char*, const Drape&>{"uniform", result.uniform},
+                                    {"wave", result.wave},
+                                    {"optimised", result.best}}) {
+    rows.push_back({.name = name, .score = drape.score});
+    if (!drape.other) continue;
+    rows.push_back({.name = fmt::format("{}, {}", name, drape.other->label()),
+                    .score = drape.other->score,
+                    .beside = true});
+  }
   return rows;
 }
 

@@ -31,15 +31,26 @@ double number_or(const json& value, double otherwise) {
 }
 
 json to_json(const Evaluation& e) {
-  return {{"number", e.number},
-          {"stage", e.stage},
-          {"fidelity", e.fidelity},
-          {"schedule_hash", hex(e.schedule_hash)},
-          {"objective", finite(e.outcome.score.objective)},
-          {"best_so_far", finite(e.best_so_far)},
-          {"wall_seconds", finite(e.outcome.wall_seconds)},
-          {"score", score_json(e.outcome.score)},
-          {"summary", summary_json(e.outcome.summary)}};
+  json line{{"number", e.number},
+            {"stage", e.stage},
+            {"fidelity", e.fidelity},
+            {"schedule_hash", hex(e.schedule_hash)},
+            {"objective", finite(e.outcome.score.objective)},
+            {"best_so_far", finite(e.best_so_far)},
+            {"wall_seconds", finite(e.outcome.wall_seconds)},
+            {"summary", summary_json(e.outcome.summary)}};
+  add_scores(e.outcome.score, e.outcome.other, line);
+  return line;
+}
+
+constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
+
+Score score_from(const json& j) {
+  Score score;
+  for (const ScorePart& part : kScoreParts) score.*part.value = number_or(j.at(part.key), kLost);
+  score.valid = j.at("valid").get<bool>();
+  if (!score.valid) score.reason = j.at("reason").get<std::string>();
+  return score;
 }
 
 Evaluation from_json(const json& j) {
@@ -50,13 +61,14 @@ Evaluation from_json(const json& j) {
   e.schedule_hash = from_hex(j.at("schedule_hash"));
   e.best_so_far = number_or(j.at("best_so_far"), kInfinity);
   e.outcome.wall_seconds = number_or(j.at("wall_seconds"), 0);
-  const json& score = j.at("score");
   const json& summary = j.at("summary");
-  constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
-  for (const ScorePart& part : kScoreParts)
-    e.outcome.score.*part.value = number_or(score.at(part.key), kLost);
-  e.outcome.score.valid = score.at("valid").get<bool>();
-  if (!e.outcome.score.valid) e.outcome.score.reason = score.at("reason").get<std::string>();
+  e.outcome.score = score_from(j.at("score"));
+  for (const bool before : {true, false}) {
+    OtherScore other{before, {}};
+    if (!j.contains(other.key())) continue;
+    other.score = score_from(j.at(other.key()));
+    e.outcome.other = std::move(other);
+  }
   const auto read_from = [&](const json& object) {
     return [&](const char* key, double& v, bool SummaryParts::*part) {
       const bool absent = part != nullptr && !object.contains(key);

@@ -21,7 +21,8 @@ namespace drapeplan {
 
 /// What one evaluation gave.
 struct Outcome {
-  Score score;  ///< valid == false: failed, for the reason given there
+  Score score;                      ///< valid == false: failed, for the reason given there
+  std::optional<OtherScore> other;  ///< where the ply was pressed
   RunSummary summary;
   double wall_seconds = 0;  ///< [s]
   bool cached = false;      ///< served without a run

@@ -113,7 +113,7 @@ PlanResult plan(const DrapeProblem& problem, OutputFolder& out, const PlanOption
     const bool report = fidelity == kReport;
     Drape drape = problem.run(schedule, fidelity, report ? kFrames : 0);
     Outcome outcome{
-        .score = drape.score, .summary = drape.run.summary, .wall_seconds = drape.run.summary.wall_seconds};
+        .score = drape.score, .other = drape.other, .summary = drape.run.summary, .wall_seconds = drape.run.summary.wall_seconds};
     if (report) reported.offer(schedule_hash(schedule), std::move(drape));
     return outcome;
   };

@@ -10,6 +10,7 @@ std::vector<StressScene> stress_scenes() {
   add_sheet_scenes(scenes);
   add_mold_scenes(scenes);
   add_rig_scenes(scenes);
+  add_press_scenes(scenes);
   add_numeric_scenes(scenes);
   // Scenes of a group stand together, in the order in which groups first appear.
   std::vector<std::string> groups;

@@ -23,6 +23,18 @@ done
 expect 0 simulate "$quick" --json --restart "$work/first.state" --threads 3
 same "$(hash_of "$work/whole.json")" "$(hash_of "$work/stdout")" "three threads after a pause"
 
+# Within the press.
+press=(--fidelity screen --set 'press={"pressure": "30 kPa", "duration": "1 s", "ramp": "0.5 s", "pads": "released"}')
+expect 0 simulate "$quick" --json "${press[@]}"
+cp "$work/stdout" "$work/pressed.json"
+value "$work/pressed.json" /score/rms_gap >"$work/value"
+expect 0 simulate "$quick" --json "${press[@]}" --pause '11.7 s' --save "$work/press.state"
+same paused "$(value "$work/stdout" /status)" "status"
+expect 0 simulate "$quick" --json "${press[@]}" --restart "$work/press.state"
+for key in state_hash steps score score_pressed energy; do
+  same "$(value "$work/pressed.json" /$key)" "$(value "$work/stdout" /$key)" "$key after a pause in the press"
+done
+
 # A strip without a rig, with rates.
 expect 0 simulate "$strip" --json "${coarse[@]}"
 cp "$work/stdout" "$work/strip.json"
@@ -60,4 +72,4 @@ refuse '--pause: ' simulate "$strip" --pause '1 mm' --save "$work/x.state"
 # A place that cannot be written is named before the run.
 expect 2 simulate "$strip" --quiet "${coarse[@]}" --pause '0.01 s' --save "$work/no/folder.state"
 grep -qF "$work/no/folder.state" "$work/stderr" || fail "no path: $(cat "$work/stderr")"
-finish 34
+finish 44

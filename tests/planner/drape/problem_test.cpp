@@ -50,5 +50,42 @@ TEST(DrapeProblem, SolvesTheReachProblemOnDemandAndAimsAtItOnlyIfTold) {
   EXPECT_NE(reachable.frame().target_z, mapped.frame().target_z);
 }
 
+const std::vector<std::string> kPressed{"press={\"pressure\": \"30 kPa\", \"duration\": \"0.4 s\", \"ramp\": \"0.2 s\"}"};
+
+TEST(DrapeProblem, ScoresThePlyBeforeAndAfterPressing) {
+  const DrapeProblem plain(quick_case()), pressed(quick_case(kPressed));
+  const Schedule schedule = to_schedule(plain.frame(), uniform_strokes(plain.frame()));
+  EXPECT_EQ(schedule_hash(to_schedule(pressed.frame(), uniform_strokes(pressed.frame()))),
+            schedule_hash(schedule));
+  const Drape without = plain.run(schedule, "screen"), with = pressed.run(schedule, "screen");
+  ASSERT_TRUE(with.score.valid && without.score.valid) << with.score.reason;
+  EXPECT_FALSE(without.other);
+  ASSERT_TRUE(with.other && with.other->before);
+  for (const ScorePart& part : kScoreParts)
+    EXPECT_EQ(with.other->score.*part.value, without.score.*part.value) << part.key;
+  EXPECT_LT(with.score.rms_gap, 0.8 * without.score.rms_gap);
+  std::vector<std::string> before = kPressed;
+  before.emplace_back("press.objective=before");
+  const Drape taken = DrapeProblem(quick_case(before)).run(schedule, "screen");
+  ASSERT_TRUE(taken.other && !taken.other->before);
+  EXPECT_EQ(taken.score.objective, without.score.objective);
+  EXPECT_EQ(taken.other->score.objective, with.score.objective);
+}
+
+TEST(DrapeProblem, LetsPadsGoInThePressAtTheLatest) {
+  std::vector<std::string> released = kPressed;
+  released.emplace_back("press.pads=released");
+  const DrapeProblem problem(quick_case(released));
+  Schedule schedule = to_schedule(problem.frame(), uniform_strokes(problem.frame()));
+  ASSERT_EQ(schedule.release.size(), schedule.paths.size());
+  for (const auto& time : schedule.release) EXPECT_NEAR(*time, schedule.duration() + 0.2, 1e-4);
+  const Schedule again = schedule;
+  let_go_pressed(problem.definition().press, schedule);
+  EXPECT_EQ(schedule_hash(schedule), schedule_hash(again));
+  schedule.release[1] = 1;
+  let_go_pressed(problem.definition().press, schedule);
+  EXPECT_EQ(*schedule.release[1], 1);
+}
+
 }  // namespace
 }  // namespace drapeplan

@@ -63,6 +63,19 @@ TEST(HtmlReport, BestValidRowStandsOutAndReferencesDoNot) {
   EXPECT_TRUE(contains(page, "failed: diverged"));
 }
 
+TEST(HtmlReport, AScoreThatTheObjectiveDoesNotTakeStandsBesideAndIsNotCompared) {
+  PlanReport report;
+  ReportRow before = row("optimised, before pressing", 0.001);
+  before.beside = true;
+  report.rows = {row("uniform", 0.0122), row("optimised", 0.0034)};
+  EXPECT_FALSE(contains(html_report(report), "Grey rows"));
+  report.rows.push_back(before);
+  const std::string page = html_report(report);
+  EXPECT_TRUE(contains(page, "<tr class=\"beside\"><td>optimised, before pressing</td><td>1.00</td>"));
+  EXPECT_TRUE(contains(page, "<td class=\"best\">3.40</td>"));
+  EXPECT_TRUE(contains(page, "Grey rows"));
+}
+
 TEST(HtmlReport, OneRowHasNothingToStandOutFrom) {
   PlanReport report;
   report.rows = {row("uniform", 0.0122)};

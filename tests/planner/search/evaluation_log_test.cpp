@@ -66,6 +66,21 @@ TEST(ScheduleHash, SeesEveryNumberButNotTheSignOfZero) {
   EXPECT_NE(schedule_hash({{{{0, 1}}, {{0, 1}}}, 0}), schedule_hash({{{{0, 1}, {0, 1}}}, 0}));
 }
 
+TEST_F(EvaluationLogFile, KeepsBothScoresOfAPressedPly) {
+  for (const bool before : {true, false}) {
+    std::filesystem::remove(path_);
+    Outcome pressed = outcome_of(0.1);
+    pressed.other = OtherScore{before, outcome_of(0.3).score};
+    EvaluationLog(path_, 42).write(schedule_ending_at(0.01), "screen", "wave", pressed);
+    const std::vector<Evaluation> read = read_evaluations(path_);
+    ASSERT_EQ(read.size(), 1u);
+    ASSERT_TRUE(read[0].outcome.other);
+    EXPECT_EQ(read[0].outcome.other->before, before);
+    EXPECT_EQ(read[0].outcome.other->score.max_gap, pressed.other->score.max_gap);
+    EXPECT_EQ(read[0].outcome.score.max_gap, pressed.score.max_gap);
+  }
+}
+
 TEST_F(EvaluationLogFile, ServesAKnownScheduleAfterReopeningToTheLastBit) {
   const double third = 1.0 / 3;
   {
