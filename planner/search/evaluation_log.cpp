@@ -39,7 +39,8 @@ json to_json(const Evaluation& e) {
             {"best_so_far", finite(e.best_so_far)},
             {"wall_seconds", finite(e.outcome.wall_seconds)},
             {"summary", summary_json(e.outcome.summary)}};
-  add_scores(e.outcome.score, e.outcome.other, line);
+  line["score"] = score_json(e.outcome.score);  // the one that the objective takes
+  if (const auto& other = e.outcome.other) line[other->key()] = score_json(other->score);
   return line;
 }
 

@@ -1,4 +1,6 @@
 // Plies that are pressed: from no pressure to far beyond an autoclave, at once, in the air, with pads let go.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 
@@ -66,7 +68,7 @@ void add_pressures(Scenes& scenes) {
     return std::vector{weight_carried(run), at_most("moved [m]", moved_by_press(run), 1e-4)};
   };
   for (const double pressure : {10.0, 1e3, 3e4, 1e5, 3e5, 1e6}) {
-    scenes.push_back(press_scene(number_text(pressure) + " Pa", pressure));
+    scenes.push_back(press_scene(fmt::format("{:.3g}", pressure) + " Pa", pressure));
     scenes.back().fast = pressure == 1e6;
   }
   scenes.push_back(press_scene("10 MPa", 1e7));
