@@ -84,7 +84,8 @@ bool is_result_name(std::string_view name) {
                                      "bench.csv",
                                      "stress.csv",
                                      "stress.md",
-                                     "net.csv"};
+                                     "net.csv",
+                                     "design.json"};
   static constexpr std::array kEndings{".vtu", ".pvd", ".svg"};
   constexpr std::string_view kPartial = ".partial";
   if (name.ends_with(kPartial)) name.remove_suffix(kPartial.size());

@@ -74,6 +74,34 @@ json baselines_json(const PlanResult& result) {
   return baselines;
 }
 
+/// What was changed of the case, and the objective of the best schedule without each change.
+json design_json(const PlanResult& result) {
+  json changes = json::array();
+  for (const DesignChange& change : result.design->changes) {
+    changes.push_back({{"path", change.path},
+                       {"from", change.before},
+                       {"to", change.after},
+                       {"objective_without", finite(change.without.score.objective)}});
+  }
+  return {{"changes", std::move(changes)},
+          {"case", kDesignFile},
+          {"evaluations", result.design->evaluations},
+          {"given_uniform", score_json(result.given)}};
+}
+
+std::string design_text(const PlanResult& result) {
+  std::string text =
+      fmt::format("\nthe case as it was given, uniform: objective {:.2f}\n", result.given.objective);
+  for (const DesignChange& change : result.design->changes) {
+    text += fmt::format("  {}: {} instead of {}; without this change the objective is {}\n", change.path,
+                        change.after, change.before,
+                        change.without.score.valid ? fmt::format("{:.2f}", change.without.score.objective)
+                                                   : "none: " + change.without.score.reason);
+  }
+  text.pop_back();
+  return text;
+}
+
 json plan_json(const DrapeProblem& problem, const PlanResult& result) {
   const StagedResult& search = result.search;
   json reach{{"floor_max", finite(problem.reach().floor_max)},
@@ -84,25 +112,25 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
   json best{{"candidate", search.best.name}};
   add_scores(result.best.score, result.best.other, best);
   if (result.best.score.valid) best["schedule"] = "schedule.json";
-  return {
-      {"case", problem.definition().name},
-      {"terms", problem.model(kReport).term_names()},
-      {"reach", reach},
-      {"map",
-       {{"max_shear_deg", problem.mapping().max_shear_deg},
-        {"mean_shear_deg", problem.mapping().mean_shear_deg}}},
-      {"baselines", baselines_json(result)},
-      {"best", best},
-      {"runs",
-       {{"uniform", drape_json(result.uniform)},
-        {"wave", drape_json(result.wave)},
-        {"best", drape_json(result.best)}}},
-      {"beats_baselines", search.beats_baselines},
-      {"message", search.message},
-      {"evaluations", search.evaluations},
-      {"failed_evaluations", search.failed_evaluations},
-      {"wall_seconds", result.wall_seconds},
-      {"history", history_json(search)}};
+  if (result.design) best["design"] = design_json(result);
+  return {{"case", problem.definition().name},
+          {"terms", problem.model(kReport).term_names()},
+          {"reach", reach},
+          {"map",
+           {{"max_shear_deg", problem.mapping().max_shear_deg},
+            {"mean_shear_deg", problem.mapping().mean_shear_deg}}},
+          {"baselines", baselines_json(result)},
+          {"best", best},
+          {"runs",
+           {{"uniform", drape_json(result.uniform)},
+            {"wave", drape_json(result.wave)},
+            {"best", drape_json(result.best)}}},
+          {"beats_baselines", search.beats_baselines},
+          {"message", search.message},
+          {"evaluations", search.evaluations},
+          {"failed_evaluations", search.failed_evaluations},
+          {"wall_seconds", result.wall_seconds},
+          {"history", history_json(search)}};
 }
 
 struct PlannedCase {
@@ -126,6 +154,7 @@ std::string result_text(const DrapeProblem& problem, const PlanResult& result,
                   result.search.message, result.search.evaluations, result.search.failed_evaluations,
                   std::llround(result.wall_seconds));
   if (result.best.score.valid) text += fmt::format("; report: {}", (folder / "report.html").string());
+  if (result.design) text += design_text(result);
   return text + "\n";
 }
 
@@ -144,11 +173,12 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
   const PlanResult result = plan(problem, out, planning, [&](const Progress& progress) {
     if (talk) line(progress);
   });
+  const DrapeProblem& planned = planned_problem(problem, result);
   if (result.best.score.valid)
-    write_plan(out.path(), problem, result);  // no schedule for a robot from failed runs
-  json document = plan_json(problem, result);
+    write_plan(out.path(), planned, result);  // no schedule for a robot from failed runs
+  json document = plan_json(planned, result);
   write_text(out.path() / "result.json", document_text(document));
-  return {std::move(document), result_text(problem, result, out.path()), result.best.score.valid};
+  return {std::move(document), result_text(planned, result, out.path()), result.best.score.valid};
 }
 
 /// A run directory per case: --out itself for a single case, else a folder below it by the case file's name.

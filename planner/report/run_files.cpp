@@ -8,7 +8,9 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "planner/base/json_text.hpp"
 #include "planner/base/text.hpp"
+#include "planner/case/file.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/drape/schedule_file.hpp"
 #include "planner/drape/scoring.hpp"
@@ -70,6 +72,23 @@ std::vector<std::string> notes_of(const DrapeProblem& problem) {
     if (!source->empty()) notes.push_back(*source);
   }
   return notes;
+}
+
+/// What was changed of the case, and what each change brought.
+std::string design_note(const PlanResult& result) {
+  std::string text = fmt::format(
+      "The rig was searched together with the schedule. On the case as it was given, the uniform sequence "
+      "has an "
+      "objective of {:.2f}. Changed:",
+      result.given.objective);
+  for (const DesignChange& change : result.design->changes) {
+    text += fmt::format(" {} is {} instead of {} (the best sequence without this change: {});", change.path,
+                        change.after, change.before,
+                        change.without.score.valid ? fmt::format("{:.2f}", change.without.score.objective)
+                                                   : change.without.score.reason);
+  }
+  text.back() = '.';
+  return text;
 }
 
 }  // namespace
@@ -193,6 +212,11 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
                   {"evaluations.jsonl", "every evaluation"},
                   {"optimised.pvd", "the optimised drape over time, for ParaView"},
                   {"mold.vtu", "the mold, for ParaView"}};
+  if (result.design) {
+    write_text(folder / kDesignFile, dump_json(resolved_case(problem.definition()), 2) + "\n");
+    report.files.emplace_back(kDesignFile, "the case with what was changed of the rig; it runs on its own");
+    report.notes.push_back(design_note(result));
+  }
   write_text(folder / "report.html", html_report(report));
 }
 

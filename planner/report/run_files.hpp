@@ -25,6 +25,9 @@ void write_net(const std::filesystem::path& folder, const Net& net);
 void write_frames(const std::filesystem::path& folder, const std::string& name, const Mesh& mesh,
                   const std::vector<Snapshot>& frames, const Mold* mold, double thickness);
 
+/// The case with its design, in a run directory; it runs on its own.
+inline constexpr const char* kDesignFile = "design.json";
+
 /// Writes all files of a plan but result.json and resolved.json: schedule.json and .csv of the best,
 /// schedules of the baselines, contour picture, charts, VTU and PVD, report.html.
 void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result);

@@ -44,8 +44,8 @@ std::vector<size_t> first_occurrences(const std::vector<Schedule>& schedules) {
 
 }  // namespace
 
-BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int threads) {
-  return [evaluate = std::move(evaluate), &log, threads](
+BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int threads, std::uint64_t design) {
+  return [evaluate = std::move(evaluate), &log, threads, design](
              const std::vector<Schedule>& schedules, const std::string& fidelity, const std::string& stage) {
     const std::vector<size_t> first = first_occurrences(schedules);
     std::vector<Outcome> outcomes(schedules.size());
@@ -56,13 +56,13 @@ BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int thr
       const auto k = size_t(i);
       if (first[k] == k) {
         const auto run = [&] { return scored(evaluate, schedules[k], fidelity); };
-        outcomes[k] = log.evaluate_once(schedules[k], fidelity, run);
+        outcomes[k] = log.evaluate_once(candidate_hash(design, schedules[k]), fidelity, run);
       }
       const std::scoped_lock lock(order);
       finished[k] = 1;
       for (; written < schedules.size() && finished[written]; ++written) {
         if (first[written] != written || outcomes[written].cached) continue;
-        log.write(schedules[written], fidelity, stage, outcomes[written]);
+        log.write(candidate_hash(design, schedules[written]), fidelity, stage, outcomes[written]);
       }
     };
     parallel_for(int(schedules.size()), one, threads);

@@ -22,6 +22,8 @@ using BatchEvaluate = std::function<std::vector<Outcome>(
 /// of the batch, each as soon as all before it are finished: a killed run loses at most the few that
 /// overtook. Batches of concurrent callers interleave in the order of their completion.
 /// @param log  outlives the returned function.
-BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int threads = 0);
+/// @param design  of the rig that schedules are played on, see candidate_hash.
+BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int threads = 0,
+                                  std::uint64_t design = 0);
 
 }  // namespace drapeplan

@@ -140,6 +140,14 @@ std::uint64_t schedule_hash(const Schedule& schedule) {
   return hash.value();
 }
 
+std::uint64_t candidate_hash(std::uint64_t design, const Schedule& schedule) {
+  if (design == 0) return schedule_hash(schedule);
+  Fnv1a hash;
+  hash.add(design);
+  hash.add(schedule_hash(schedule));
+  return hash.value();
+}
+
 std::uintmax_t read_evaluations(const std::string& path, std::optional<std::uint64_t> case_hash,
                                 const std::function<void(Evaluation&&)>& visit) {
   std::error_code error;
@@ -199,9 +207,9 @@ void EvaluationLog::remember(const Evaluation& evaluation) {
   ++size_;
 }
 
-Outcome EvaluationLog::evaluate_once(const Schedule& schedule, const std::string& fidelity,
+Outcome EvaluationLog::evaluate_once(std::uint64_t candidate, const std::string& fidelity,
                                      const std::function<Outcome()>& run) {
-  const Key key{schedule_hash(schedule), fidelity};
+  const Key key{candidate, fidelity};
   {
     std::unique_lock lock(mutex_);
     finished_.wait(lock, [&] { return !running_.contains(key); });
@@ -231,12 +239,12 @@ Outcome EvaluationLog::evaluate_once(const Schedule& schedule, const std::string
   return *outcome;
 }
 
-void EvaluationLog::write(const Schedule& schedule, const std::string& fidelity, const std::string& stage,
+void EvaluationLog::write(std::uint64_t candidate, const std::string& fidelity, const std::string& stage,
                           const Outcome& outcome) {
   const std::scoped_lock lock(mutex_);
   double best = best_.contains(fidelity) ? best_[fidelity] : kInfinity;
   if (outcome.score.valid && outcome.score.objective < best) best = outcome.score.objective;
-  const Evaluation evaluation{last_number_ + 1, stage, fidelity, schedule_hash(schedule), outcome, best};
+  const Evaluation evaluation{last_number_ + 1, stage, fidelity, candidate, outcome, best};
   if (file_.is_open()) {
     file_ << to_line(to_json(evaluation)) << std::flush;
     if (!file_) throw NotFinished(path_ + ": cannot be written (disk full?)");

@@ -41,6 +41,8 @@ struct Evaluation {
 
 /// 64-bit FNV-1a over the sizes and the bits of all doubles (-0 counts as 0).
 std::uint64_t schedule_hash(const Schedule& schedule);
+/// The same for a schedule on a changed rig. @param design  tells changes apart; 0: none.
+std::uint64_t candidate_hash(std::uint64_t design, const Schedule& schedule);
 
 /// Append-only file of JSON lines. The first names the format and the case; each other one is an evaluation,
 /// flushed when written. Thread-safe. Resume = open the same file again: known (schedule, fidelity) pairs are
@@ -55,13 +57,13 @@ class EvaluationLog {
   /// written.
   EvaluationLog(const std::string& path, std::uint64_t case_hash);
 
-  /// The outcome of this schedule at this fidelity: the known one (cached = true), or that of `run`, which is
-  /// called once even if several threads ask for it at the same time. What `run` throws passes; nothing is
-  /// kept then.
-  Outcome evaluate_once(const Schedule& schedule, const std::string& fidelity,
+  /// The outcome of this candidate (the hash of its schedule, or of design and schedule) at this fidelity:
+  /// the known one (cached = true), or that of `run`, which is called once even if several threads ask for it
+  /// at the same time. What `run` throws passes; nothing is kept then.
+  Outcome evaluate_once(std::uint64_t candidate, const std::string& fidelity,
                         const std::function<Outcome()>& run);
   /// Appends a line; gives it its number and best so far. Order is the caller's, see batch_evaluate.hpp.
-  void write(const Schedule& schedule, const std::string& fidelity, const std::string& stage,
+  void write(std::uint64_t candidate, const std::string& fidelity, const std::string& stage,
              const Outcome& outcome);
 
   /// How many evaluations it has, those read from the file included.

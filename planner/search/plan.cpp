@@ -104,29 +104,32 @@ std::array<std::string, 3> plan_fidelities(const Case& definition) {
   return {fidelity_or_report("screen"), fidelity_or_report("search"), kReport};
 }
 
-PlanResult plan(const DrapeProblem& problem, OutputFolder& out, const PlanOptions& options,
-                const std::function<void(const Progress&)>& progress) {
-  const auto clock = std::chrono::steady_clock::now();
-  EvaluationLog log = start_log(problem, out, options);
+namespace {
+
+/// The stages of the search on one rig, at the reporting fidelity in the end.
+void search_schedules(const DrapeProblem& problem, std::uint64_t design, EvaluationLog& log,
+                      const PlanOptions& options, const std::function<void(const Progress&)>& progress,
+                      PlanResult& result) {
   ReportedDrapes reported(problem.frame());
   const Evaluate evaluate = [&](const Schedule& schedule, const std::string& fidelity) {
     const bool report = fidelity == kReport;
     Drape drape = problem.run(schedule, fidelity, report ? kFrames : 0);
-    Outcome outcome{
-        .score = drape.score, .other = drape.other, .summary = drape.run.summary, .wall_seconds = drape.run.summary.wall_seconds};
+    Outcome outcome{.score = drape.score,
+                    .other = drape.other,
+                    .summary = drape.run.summary,
+                    .wall_seconds = drape.run.summary.wall_seconds};
     if (report) reported.offer(schedule_hash(schedule), std::move(drape));
     return outcome;
   };
   StagedOptions staged;
   staged.optimise = problem.definition().optimise;
   staged.threads = options.threads;
+  if (result.design) staged.wave = result.design->wave;
   const auto fidelities = plan_fidelities(problem.definition());
   staged.wave_fidelity = fidelities[0];
   staged.gripper_fidelity = fidelities[1];
-
-  PlanResult result;
-  result.search =
-      staged_search(problem.frame(), staged, make_batch_evaluate(evaluate, log, options.threads), progress);
+  result.search = staged_search(problem.frame(), staged,
+                                make_batch_evaluate(evaluate, log, options.threads, design), progress);
   const StagedResult& search = result.search;
   const std::array<std::pair<const Candidate*, Drape*>, 3> wanted{
       {{&search.uniform, &result.uniform}, {&search.wave, &result.wave}, {&search.best, &result.best}}};
@@ -134,6 +137,35 @@ PlanResult plan(const DrapeProblem& problem, OutputFolder& out, const PlanOption
       int(wanted.size()),
       [&](int k) { *wanted[size_t(k)].second = reported.take(problem, wanted[size_t(k)].first->schedule); },
       options.threads);
+}
+
+}  // namespace
+
+PlanResult plan(const DrapeProblem& problem, OutputFolder& out, const PlanOptions& options,
+                const std::function<void(const Progress&)>& progress) {
+  const auto clock = std::chrono::steady_clock::now();
+  EvaluationLog log = start_log(problem, out, options);
+  PlanResult result;
+  const OptimiseOptions& optimise = problem.definition().optimise;
+  if (!optimise.design.empty()) {
+    const auto show = [&](int done, double best) {
+      if (!progress) return;
+      progress({.stage = "design",
+                .done = done,
+                .planned = optimise.design_evaluations,
+                .best = best,
+                .seconds_left = std::numeric_limits<double>::quiet_NaN()});
+    };
+    result.design =
+        search_design(problem, plan_fidelities(problem.definition())[0], log, options.threads, show);
+  }
+  const std::uint64_t design = result.design ? design_hash(result.design->overrides) : 0;
+  search_schedules(planned_problem(problem, result), design, log, options, progress, result);
+  if (result.design) {
+    const Schedule uniform = to_schedule(problem.frame(), uniform_strokes(problem.frame()));
+    result.given = problem.run(uniform, kReport).score;
+    compare_changes(problem, result.search.best.schedule, log, options.threads, *result.design);
+  }
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return result;
 }

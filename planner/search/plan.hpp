@@ -4,10 +4,12 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "planner/base/output_folder.hpp"
 #include "planner/drape/problem.hpp"
+#include "planner/search/design.hpp"
 #include "planner/search/stages.hpp"
 
 namespace drapeplan {
@@ -25,6 +27,8 @@ struct PlanOptions {
 /// What a plan run found; files are written by `write_plan` (planner/report/run_files.hpp).
 struct PlanResult {
   StagedResult search;
+  std::optional<DesignResult> design;  ///< where the case has design variables: all drapes are on its rig
+  Score given;                ///< then: uniform on the case as it was given, at the reporting fidelity
   Drape uniform, wave, best;  ///< at the reporting fidelity, with frames
   double wall_seconds = 0;
 };
@@ -32,11 +36,16 @@ struct PlanResult {
 /// Fidelities that a plan of the case runs: of the wave's search, of the grippers' search, of reports.
 std::array<std::string, 3> plan_fidelities(const Case& definition);
 
-/// Searches for the best schedule of the problem. The result depends on the case only: not on threads, nor on
-/// what was resumed. Results of an earlier run in `out` are set aside, resolved.json is written, and
-/// evaluations are appended to evaluations.jsonl as they end. Memory: per evaluation its outcome, its strokes
-/// and its line of the history, a few kilobytes; whole drapes are kept of the two baselines and of the best
-/// so far only.
+/// The case that the drapes of a plan are of: with its design, if there is one.
+inline const DrapeProblem& planned_problem(const DrapeProblem& given, const PlanResult& result) {
+  return result.design ? *result.design->problem : given;
+}
+
+/// Searches for the best schedule of the problem; where the case has design variables, for the best rig
+/// first. The result depends on the case only: not on threads, nor on what was resumed. Results of an earlier
+/// run in `out` are set aside, resolved.json is written, and evaluations are appended to evaluations.jsonl as
+/// they end. Memory: per evaluation its outcome, its strokes and its line of the history, a few kilobytes;
+/// whole drapes are kept of the two baselines and of the best so far only.
 /// @throws WrongInput if the log that is to be resumed belongs to another case; the folder is then as it was.
 /// @throws NotFinished if a file cannot be written.
 PlanResult plan(const DrapeProblem& problem, OutputFolder& out, const PlanOptions& options = {},

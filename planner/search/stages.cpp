@@ -181,6 +181,10 @@ std::vector<Trial> StagedSearch::screen_waves() {
   std::vector<Trial> trials{make_trial("uniform", uniform_strokes(frame_)),
                             make_trial("wave", wave_strokes(frame_))};
   starts_ = {family.encode(flat), family.encode(base)};
+  if (options_.wave.size() > 0) {
+    starts_.push_back(options_.wave);
+    trials.push_back(make_trial(fmt::format("wave {}", trials.size() + 1), family.decode(options_.wave)));
+  }
   const Eigen::Vector2d corner =
       0.5 * frame_.rig.spacing * Eigen::Vector2d(frame_.rig.columns - 1, frame_.rig.rows - 1);
   const auto add = [&](double u, double v, double delay_factor) {

@@ -1,6 +1,7 @@
 // The search for a better draping sequence, in stages: waves, then every gripper, then a fair comparison.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -15,6 +16,7 @@ struct StagedOptions {
   OptimiseOptions optimise;
   std::string wave_fidelity = "screen";
   std::string gripper_fidelity = "screen";  ///< finalists are compared at kReport
+  Eigen::VectorXd wave = {};                ///< one more wave to start from, in coordinates; empty: none
   int threads = 0;                          ///< 0: OpenMP's default; does not change the result
 };
 

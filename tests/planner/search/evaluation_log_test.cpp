@@ -71,7 +71,7 @@ TEST_F(EvaluationLogFile, KeepsBothScoresOfAPressedPly) {
     std::filesystem::remove(path_);
     Outcome pressed = outcome_of(0.1);
     pressed.other = OtherScore{before, outcome_of(0.3).score};
-    EvaluationLog(path_, 42).write(schedule_ending_at(0.01), "screen", "wave", pressed);
+    EvaluationLog(path_, 42).write(schedule_hash(schedule_ending_at(0.01)), "screen", "wave", pressed);
     const std::vector<Evaluation> read = read_evaluations(path_);
     ASSERT_EQ(read.size(), 1u);
     ASSERT_TRUE(read[0].outcome.other);
@@ -86,15 +86,15 @@ TEST_F(EvaluationLogFile, ServesAKnownScheduleAfterReopeningToTheLastBit) {
   {
     EvaluationLog log(path_, 42);
     for (const double z : {0.01, 0.02}) {
-      const Outcome o =
-          log.evaluate_once(schedule_ending_at(z), "screen", [&] { return outcome_of(z * third); });
+      const Outcome o = log.evaluate_once(schedule_hash(schedule_ending_at(z)), "screen",
+                                          [&] { return outcome_of(z * third); });
       EXPECT_FALSE(o.cached);
-      log.write(schedule_ending_at(z), "screen", "wave", o);
+      log.write(schedule_hash(schedule_ending_at(z)), "screen", "wave", o);
     }
   }
   EvaluationLog log(path_, 42);
   const auto must_not_run = []() -> Outcome { throw std::logic_error("ran"); };
-  const Outcome o = log.evaluate_once(schedule_ending_at(0.02), "screen", must_not_run);
+  const Outcome o = log.evaluate_once(schedule_hash(schedule_ending_at(0.02)), "screen", must_not_run);
   EXPECT_TRUE(o.cached);
   EXPECT_TRUE(o.score.valid);
   EXPECT_EQ(o.score.objective, 0.02 * third);
@@ -102,8 +102,10 @@ TEST_F(EvaluationLogFile, ServesAKnownScheduleAfterReopeningToTheLastBit) {
   EXPECT_EQ(o.summary.steps, 12345678901);
   EXPECT_EQ(o.summary.state_hash, 0xfedcba9876543210ULL);
   EXPECT_EQ(o.summary.message, "end of the schedule");
-  EXPECT_FALSE(log.evaluate_once(schedule_ending_at(0.02), "report", [] { return outcome_of(1); }).cached);
-  log.write(schedule_ending_at(0.02), "report", "report", outcome_of(1));
+  EXPECT_FALSE(
+      log.evaluate_once(schedule_hash(schedule_ending_at(0.02)), "report", [] { return outcome_of(1); })
+          .cached);
+  log.write(schedule_hash(schedule_ending_at(0.02)), "report", "report", outcome_of(1));
   EXPECT_EQ(log.size(), 3);
   const auto lines = read_evaluations(path_);
   ASSERT_EQ(lines.size(), 3u);
@@ -119,7 +121,7 @@ TEST_F(EvaluationLogFile, KeepsFailuresWithAnyReasonAndAnyNumber) {
     failed.score.valid = false;
     failed.score.reason = "not finite at node 812\n\xff";
     failed.summary.status = RunStatus::diverged;
-    log.write(schedule_ending_at(0), "screen", "wave", failed);
+    log.write(schedule_hash(schedule_ending_at(0)), "screen", "wave", failed);
   }
   EXPECT_EQ(EvaluationLog(path_, 1).size(), 1);
   const auto lines = read_evaluations(path_);
@@ -134,7 +136,8 @@ TEST_F(EvaluationLogFile, KeepsFailuresWithAnyReasonAndAnyNumber) {
 TEST_F(EvaluationLogFile, CutsATornLastLineWhereverItIsTorn) {
   {
     EvaluationLog log(path_, 1);
-    for (const double z : {0.0, 0.01}) log.write(schedule_ending_at(z), "screen", "wave", outcome_of(z));
+    for (const double z : {0.0, 0.01})
+      log.write(schedule_hash(schedule_ending_at(z)), "screen", "wave", outcome_of(z));
   }
   const std::string whole = text_of(path_);
   const size_t header = whole.find('\n') + 1, second = whole.find('\n', header) + 1;
@@ -143,7 +146,7 @@ TEST_F(EvaluationLogFile, CutsATornLastLineWhereverItIsTorn) {
     {
       EvaluationLog log(path_, 1);
       EXPECT_EQ(log.size(), length < second ? 0 : length < whole.size() ? 1 : 2);
-      log.write(schedule_ending_at(0.5), "screen", "wave", outcome_of(5));
+      log.write(schedule_hash(schedule_ending_at(0.5)), "screen", "wave", outcome_of(5));
     }
     EXPECT_EQ(read_evaluations(path_).back().outcome.score.objective, 5);
   }
@@ -152,7 +155,8 @@ TEST_F(EvaluationLogFile, CutsATornLastLineWhereverItIsTorn) {
 TEST_F(EvaluationLogFile, RefusesAnotherCaseABrokenLineOrAForeignFileAndLeavesItAlone) {
   {
     EvaluationLog log(path_, 1);
-    for (const double z : {0.0, 0.01}) log.write(schedule_ending_at(z), "screen", "wave", outcome_of(z));
+    for (const double z : {0.0, 0.01})
+      log.write(schedule_hash(schedule_ending_at(z)), "screen", "wave", outcome_of(z));
   }
   const std::string whole = text_of(path_);
   std::string broken = whole;
@@ -179,7 +183,7 @@ TEST(EvaluationLog, RunsAScheduleOnceThoughManyThreadsAskForIt) {
       64,
       [&](int i) {
         const Schedule schedule = schedule_ending_at(i % 4);
-        log.evaluate_once(schedule, "screen", [&] {
+        log.evaluate_once(schedule_hash(schedule), "screen", [&] {
           ++runs;
           return outcome_of(i % 4);
         });
@@ -191,7 +195,8 @@ TEST(EvaluationLog, RunsAScheduleOnceThoughManyThreadsAskForIt) {
 TEST_F(EvaluationLogFile, ReadingLeavesATornLineWhereItIs) {
   {
     EvaluationLog log(path_, 1);
-    for (const double z : {0.0, 0.01}) log.write(schedule_ending_at(z), "screen", "wave", outcome_of(z));
+    for (const double z : {0.0, 0.01})
+      log.write(schedule_hash(schedule_ending_at(z)), "screen", "wave", outcome_of(z));
   }
   const std::string torn = text_of(path_).substr(0, text_of(path_).size() - 9);
   put(path_, torn);
