@@ -14,6 +14,7 @@
 #include "planner/drape/map_result.hpp"
 #include "planner/drape/score.hpp"
 #include "planner/drape/strategy.hpp"
+#include "planner/reach/floor.hpp"
 #include "planner/reach/reach.hpp"
 
 namespace drapeplan {
@@ -31,6 +32,11 @@ Model model_of(const Case& definition, const FemOptions& options);
 
 /// The reach problem of a case with grippers. @param targets  mapped places of the pads [m].
 ReachProblem reach_problem_of(const Case& definition, const std::vector<Eigen::Vector3d>& targets);
+
+/// The floor of a case with grippers, on the mesh that a drape at this mesh size has, held where a drape is.
+/// @param cell  mesh size [m].
+/// @throws WrongInput if there is no such mesh.
+FloorProblem floor_problem_of(const Case& definition, const MapResult& map, double cell = 0.020);
 
 /// One simulated drape with its score.
 struct Drape {
