@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "planner/reach/floor_edge.hpp"
@@ -18,13 +19,17 @@ constexpr double kLengthTolerance = 1e-6;  // [m]: a solution that misses a cons
 constexpr double kSameGap = 2e-5;          // [m]: gaps that differ by less are the same local solution
 /// Of optimality and constraints, in units of the spacing: 0.1 um at 100 mm.
 constexpr double kTolerance = 1e-6;
-constexpr int kMaxIterations = 400;
+constexpr int kMaxIterations = 150;
 constexpr double kMaxCpuSeconds = 60;  // of the whole process, all threads: a guard against a hang only
 constexpr double kFirstGap = 1e-3;     // [m]: of all nodes in a start; inside its bound, as Ipopt likes it
 /// [spacing]: largest shift of a pad, per axis, for a random start (as in reach.cpp).
 constexpr double kPerturbation = 0.15;
 constexpr int kRounds = 4;                // of linearising the boundary
-constexpr double kSameLimit = 2e-5;       // [m]: limits that say the same of a node to this are the same
+constexpr double kSameLimit = 5e-5;       // [m]: limits that say the same of a node to this are the same
+/// First barrier parameter, and how far starts are moved from their bounds, at most. Larger ones lift the whole
+/// net off the mold first, from where it finds its way back slowly, or to a poor local minimum.
+constexpr double kBarrier = 1e-5;
+constexpr double kPush = 1e-3;
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -91,7 +96,6 @@ std::vector<FloorShape> starts(const FloorProblem& problem, const FloorOptions& 
   std::vector<FloorShape> all{shape_of(problem, mapped), shape_of(problem, problem.flat)};
   std::mt19937 bits(options.seed);
   const auto uniform = [&bits] { return double(bits()) / 2147483648.0 - 1; };
-  if (options.random_starts == -2) all.pop_back();
   for (int k = 0; k < options.random_starts; ++k) {
     // One shift per pad, spread over the net by distance: neighbours move together.
     std::vector<Eigen::Vector2d> shift, xy = mapped;
@@ -115,9 +119,11 @@ std::vector<FloorShape> starts(const FloorProblem& problem, const FloorOptions& 
   return all;
 }
 
+using Nodes = std::vector<Eigen::Vector3d>;
+
 struct Solved {
   FloorPoint point;
-  Eigen::VectorXd variables, multipliers;
+  FloorShape shape;
 };
 
 FloorPoint point_of(const FloorProblem& problem, const FloorNlp& nlp, const IpoptOutcome& outcome) {
@@ -140,42 +146,96 @@ FloorPoint point_of(const FloorProblem& problem, const FloorNlp& nlp, const Ipop
   return point;
 }
 
-/// One tolerance from one start; the boundary's tangents are taken again until they stay.
-Solved solve_from(const FloorProblem& problem, const FloorShape& start, double tolerance, double barrier) {
-  const auto begin = std::chrono::steady_clock::now();
-  Solved solved;
-  FloorShape shape = start;
-  std::vector<Eigen::Vector3d> nodes;
-  int iterations = 0;
-  for (int round = 0; round < kRounds; ++round) {
-    if (nodes.empty()) {
-      const std::vector<EdgeLimit> none;
-      const FloorNlp free(problem, none);
-      nodes = free.nodes_at(free.variables_at(shape));
+/// One tolerance; the boundary's tangents are taken again until they stay.
+class Solver {
+ public:
+  Solver(const FloorProblem& problem, double tolerance) : problem_(problem), tolerance_(tolerance) {}
+
+  /// @param nodes  where the tangents are taken first [m].
+  Solved solve(const FloorShape& start, const Nodes& nodes, int rounds = kRounds) const {
+    const auto begin = std::chrono::steady_clock::now();
+    Solved solved;
+    int iterations = 0;
+    FloorShape shape = start;
+    std::vector<EdgeLimit> limits = edge_limits(problem_, nodes, tolerance_);
+    for (int round = 0; round < rounds; ++round) {
+      const FloorNlp nlp(problem_, limits);
+      const IpoptOutcome outcome = minimise(nlp, nlp.variables_at(shape), settings());
+      iterations += outcome.iterations;
+      solved = {point_of(problem_, nlp, outcome), nlp.shape_at(outcome.variables)};
+      if (!solved.point.converged || std::isinf(tolerance_)) break;
+      std::vector<EdgeLimit> next = edge_limits(problem_, solved.point.nodes, tolerance_);
+      if (limit_change(limits, next, solved.point.nodes) <= kSameLimit) break;
+      limits = std::move(next);
+      shape = solved.shape;
     }
-    const std::vector<EdgeLimit> limits = edge_limits(problem, nodes, tolerance);
-    const FloorNlp nlp(problem, limits);
+    solved.point.boundary_tolerance = tolerance_;
+    solved.point.boundary_offset = edge_offset(problem_, solved.point.nodes);
+    solved.point.iterations = iterations;
+    solved.point.wall_seconds = seconds_since(begin);
+    return solved;
+  }
+
+ private:
+  static IpoptSettings settings() {
     IpoptSettings settings;
     settings.tolerance = kTolerance;
     settings.max_iterations = kMaxIterations;
     settings.max_cpu_seconds = kMaxCpuSeconds;
-    settings.barrier = barrier;
-    settings.push = barrier < 1e-3 ? 1e-4 : 1e-2;
-    const IpoptOutcome outcome = minimise(nlp, nlp.variables_at(shape), settings);
-    iterations += outcome.iterations;
-    solved.point = point_of(problem, nlp, outcome);
-    solved.variables = outcome.variables;
-    solved.multipliers = outcome.multipliers;
-    if (!solved.point.converged) break;
-    nodes = solved.point.nodes;
-    if (limit_change(limits, edge_limits(problem, nodes, tolerance), nodes) <= kSameLimit) break;
-    shape = nlp.shape_at(outcome.variables);
+    settings.barrier = kBarrier;
+    settings.push = kPush;
+    settings.long_dual_steps = settings.minimum_degree = true;
+    return settings;
   }
-  solved.point.boundary_tolerance = tolerance;
-  solved.point.boundary_offset = edge_offset(problem, solved.point.nodes);
-  solved.point.iterations = iterations;
-  solved.point.wall_seconds = seconds_since(begin);
-  return solved;
+
+  const FloorProblem& problem_;
+  double tolerance_;
+};
+
+bool better(const Solved& a, const Solved& b) {
+  if (a.point.converged != b.point.converged) return a.point.converged;
+  return a.point.converged ? a.point.gap < b.point.gap : a.point.violation < b.point.violation;
+}
+
+/// One tolerance from all starts; the best of them goes on. All have the same tangents at first, so their gaps
+/// compare.
+Solved solve_first(const FloorProblem& problem, double tolerance, const FloorOptions& options,
+                   FloorFront& front) {
+  const Solver solver(problem, tolerance);
+  std::vector<Solved> solved;
+  for (const FloorShape& start : starts(problem, options)) {
+    solved.push_back(solver.solve(start, problem.mapped, 1));
+    if (std::getenv("TRY")) std::fprintf(stderr, "start %s it %d gap %.4f\n", solved.back().point.status.c_str(), solved.back().point.iterations, 1e3 * solved.back().point.gap);
+  }
+  const Solved& best = *std::min_element(solved.begin(), solved.end(), better);
+  front.starts = int(solved.size());
+  for (const Solved& one : solved) {
+    if (!one.point.converged) continue;
+    ++front.converged;
+    front.agreed += one.point.gap <= best.point.gap + kSameGap ? 1 : 0;
+    front.start_spread = std::max(front.start_spread, one.point.gap - best.point.gap);
+  }
+  if (!best.point.converged || std::isinf(tolerance)) return best;
+  const Solved last = solver.solve(best.shape, best.point.nodes);
+  return last.point.converged ? last : best;
+}
+
+/// A tolerance beside one that is solved: from there; if that fails, from the mapped net.
+Solved solve_next(const FloorProblem& problem, double tolerance, const Solved& neighbour,
+                  const FloorShape& mapped) {
+  const Solver solver(problem, tolerance);
+  if (!neighbour.point.converged) return solver.solve(mapped, problem.mapped);
+  Solved solved = solver.solve(neighbour.shape, neighbour.point.nodes);
+  if (solved.point.converged) return solved;
+  return solver.solve(mapped, problem.mapped);
+}
+
+FloorPoint failed_point(double tolerance, const std::string& why) {
+  FloorPoint point;
+  point.boundary_tolerance = tolerance;
+  point.status = why;
+  point.gap = point.rms_gap = point.boundary_offset = kNaN;
+  return point;
 }
 
 }  // namespace
@@ -183,29 +243,25 @@ Solved solve_from(const FloorProblem& problem, const FloorShape& start, double t
 FloorFront solve_floor(const FloorProblem& problem, const FloorOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   FloorFront front;
-  if (const std::string why = check_floor(problem); !why.empty()) {
-    for (const double tolerance : options.tolerances) {
-      FloorPoint point;
-      point.boundary_tolerance = tolerance;
-      point.status = why;
-      point.gap = point.rms_gap = point.boundary_offset = kNaN;
-      front.points.push_back(point);
-    }
-    return front;
-  }
-  const std::vector<FloorShape> from = starts(problem, options);
-  for (const double tolerance : options.tolerances) {
-    Solved best;
-    for (const FloorShape& shape : from) {
-      const Solved solved = solve_from(problem, shape, tolerance, 0.1);
-      std::fprintf(stderr, "B %.1f mm: %s gap %.4f rms %.4f offset %.3f viol %.2g it %d %.2f s\n", tolerance * 1e3,
-                   solved.point.status.c_str(), 1e3 * solved.point.gap, 1e3 * solved.point.rms_gap,
-                   1e3 * solved.point.boundary_offset, 1e3 * solved.point.violation, solved.point.iterations,
-                   solved.point.wall_seconds);
-      if (best.variables.size() == 0 || !(solved.point.gap >= best.point.gap)) best = solved;
-    }
-    front.points.push_back(best.point);
-  }
+  const std::string why = check_floor(problem);
+  for (const double tolerance : options.tolerances) front.points.push_back(failed_point(tolerance, why));
+  if (!why.empty()) return front;
+
+  // All starts in the middle of the front; then each tolerance from the solution of its neighbour.
+  std::vector<size_t> order(options.tolerances.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return options.tolerances[a] < options.tolerances[b]; });
+  if (order.empty()) return front;
+  std::vector<Solved> solved(order.size());
+  const size_t middle = order.size() / 2;
+  solved[middle] = solve_first(problem, options.tolerances[order[middle]], options, front);
+  const FloorShape mapped = starts(problem, options).front();
+  for (size_t k = middle; k-- > 0;)
+    solved[k] = solve_next(problem, options.tolerances[order[k]], solved[k + 1], mapped);
+  for (size_t k = middle + 1; k < order.size(); ++k)
+    solved[k] = solve_next(problem, options.tolerances[order[k]], solved[k - 1], mapped);
+  for (size_t k = 0; k < order.size(); ++k) front.points[order[k]] = std::move(solved[k].point);
   front.wall_seconds = seconds_since(begin);
   return front;
 }

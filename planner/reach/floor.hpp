@@ -68,8 +68,10 @@ struct FloorOptions {
 
 struct FloorFront {
   std::vector<FloorPoint> points;  ///< in the order of the tolerances
-  double start_spread = 0;         ///< largest difference of a gap between starts that converged [m]
-  int starts = 0, agreed = 0;      ///< how many converged at the first tolerance; how many gave its gap
+  /// At the middle tolerance: how many starts there were, converged, and came to the smallest gap; and the
+  /// largest difference of their gaps [m].
+  int starts = 0, converged = 0, agreed = 0;
+  double start_spread = 0;
   double wall_seconds = 0;
 };
 

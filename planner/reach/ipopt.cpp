@@ -36,9 +36,8 @@ void give_pattern(const SmoothProgram::Pattern& pattern, Index* rows, Index* col
 
 class Adapter final : public Ipopt::TNLP {
  public:
-  Adapter(const SmoothProgram& program, const Eigen::VectorXd& start, const Eigen::VectorXd& multipliers,
-          IpoptOutcome& outcome)
-      : program_(program), form_(program.form()), start_(start), multipliers_(multipliers), outcome_(outcome) {}
+  Adapter(const SmoothProgram& program, const Eigen::VectorXd& start, IpoptOutcome& outcome)
+      : program_(program), form_(program.form()), start_(start), outcome_(outcome) {}
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
     n = Index(form_.variables.lower.size());
@@ -59,9 +58,7 @@ class Adapter final : public Ipopt::TNLP {
     return true;
   }
 
-  bool get_starting_point(Index, bool, Number* x, bool, Number*, Number*, Index, bool with_multipliers,
-                          Number* multipliers) override {
-    if (with_multipliers) std::copy(multipliers_.begin(), multipliers_.end(), multipliers);
+  bool get_starting_point(Index, bool, Number* x, bool, Number*, Number*, Index, bool, Number*) override {
     return give(start_, x);
   }
 
@@ -105,7 +102,7 @@ class Adapter final : public Ipopt::TNLP {
  private:
   const SmoothProgram& program_;
   const SmoothProgram::Form form_;
-  const Eigen::VectorXd &start_, &multipliers_;
+  const Eigen::VectorXd& start_;
   IpoptOutcome& outcome_;
 };
 
@@ -134,7 +131,7 @@ std::string in_words(Ipopt::ApplicationReturnStatus status) {
   }
 }
 
-void set_options(Ipopt::OptionsList& options, const IpoptSettings& settings, bool warm) {
+void set_options(Ipopt::OptionsList& options, const IpoptSettings& settings) {
   options.SetIntegerValue("print_level", 0);
   options.SetNumericValue("tol", settings.tolerance);
   options.SetNumericValue("constr_viol_tol", settings.tolerance);
@@ -144,7 +141,8 @@ void set_options(Ipopt::OptionsList& options, const IpoptSettings& settings, boo
   options.SetNumericValue("bound_push", settings.push);
   options.SetNumericValue("bound_frac", settings.push);
   options.SetStringValue("nlp_scaling_method", "none");  // the variables are of order 1 already
-  (void)warm;
+  options.SetStringValue("alpha_for_y", settings.long_dual_steps ? "bound-mult" : "primal");
+  options.SetIntegerValue("mumps_pivot_order", settings.minimum_degree ? 0 : 7);
   if (const char* more = std::getenv("IPO")) {
     std::istringstream in(more);
     std::string name, value;
@@ -164,14 +162,13 @@ std::mutex& ipopt_mutex() {
   return mutex;
 }
 
-IpoptOutcome minimise(const SmoothProgram& program, const Eigen::VectorXd& start, const IpoptSettings& settings,
-                      const Eigen::VectorXd& multipliers) {
+IpoptOutcome minimise(const SmoothProgram& program, const Eigen::VectorXd& start, const IpoptSettings& settings) {
   IpoptOutcome outcome;
   outcome.variables = start;
   const std::lock_guard<std::mutex> lock(ipopt_mutex());
 
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(std::getenv("IPO") != nullptr);  // no console
-  set_options(*application->Options(), settings, multipliers.size() > 0);
+  set_options(*application->Options(), settings);
   // An empty name: by default an ipopt.opt in the working directory would change the result.
   const Ipopt::ApplicationReturnStatus ready = application->Initialize("");
   if (ready != Ipopt::Solve_Succeeded) {
@@ -179,7 +176,7 @@ IpoptOutcome minimise(const SmoothProgram& program, const Eigen::VectorXd& start
     return outcome;
   }
   const Ipopt::ApplicationReturnStatus status =
-      application->OptimizeTNLP(new Adapter(program, start, multipliers, outcome));
+      application->OptimizeTNLP(new Adapter(program, start, outcome));
   outcome.converged = status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level;
   outcome.infeasible = status == Ipopt::Infeasible_Problem_Detected;
   outcome.status = in_words(status);

@@ -14,6 +14,8 @@ struct IpoptSettings {
   double max_cpu_seconds = 5;   ///< of the whole process, all threads: a guard against a hang only
   double barrier = 0.1;         ///< the first barrier parameter; small where the start is near a solution
   double push = 1e-2;           ///< how far starts are moved away from their bounds, at most
+  bool long_dual_steps = false; ///< multipliers take the step of the bounds' multipliers
+  bool minimum_degree = false;  ///< the linear solver orders by minimum degree: faster for large sparse ones
 };
 
 struct IpoptOutcome {
@@ -26,8 +28,7 @@ struct IpoptOutcome {
 };
 
 /// A local minimum near `start`. Holds ipopt_mutex() all the time.
-/// @param multipliers  of the constraints near the solution; empty: none known.
 IpoptOutcome minimise(const SmoothProgram& program, const Eigen::VectorXd& start,
-                      const IpoptSettings& settings = {}, const Eigen::VectorXd& multipliers = {});
+                      const IpoptSettings& settings = {});
 
 }  // namespace drapeplan
