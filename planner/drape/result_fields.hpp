@@ -11,6 +11,7 @@
 
 #include "fem/core/run_summary.hpp"
 #include "planner/drape/score.hpp"
+#include "planner/reach/floor.hpp"
 
 namespace drapeplan {
 
@@ -68,6 +69,20 @@ inline nlohmann::json score_json(const Score& score) {
   out["valid"] = score.valid;
   if (!score.valid) out["reason"] = score.reason;
   return out;
+}
+
+/// Of a front of floors: one object per boundary tolerance, null for free.
+inline nlohmann::json front_json(const FloorFront& front) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const FloorPoint& point : front.points) {
+    list.push_back({{"boundary_tolerance", finite(point.boundary_tolerance)},
+                    {"floor_gap", finite(point.gap)},
+                    {"rms_gap", finite(point.rms_gap)},
+                    {"boundary_offset", finite(point.boundary_offset)},
+                    {"converged", point.converged},
+                    {"status", point.status}});
+  }
+  return list;
 }
 
 /// Without the figures of what the scene does not have.

@@ -142,6 +142,7 @@ FloorPoint point_of(const FloorProblem& problem, const FloorNlp& nlp, const Ipop
   double area = 0, squares = 0;
   for (size_t n = 0; n < areas.size(); ++n) area += areas[n], squares += areas[n] * shape.gap[n] * shape.gap[n];
   point.gap = point.converged ? nlp.largest_gap(v) : kNaN;
+  if (point.converged) point.spans = taut_spans(problem, nlp.fibres(), point.nodes, outcome.multipliers);
   point.rms_gap = point.converged ? std::sqrt(squares / area) : kNaN;
   return point;
 }
@@ -203,10 +204,8 @@ Solved solve_first(const FloorProblem& problem, double tolerance, const FloorOpt
                    FloorFront& front) {
   const Solver solver(problem, tolerance);
   std::vector<Solved> solved;
-  for (const FloorShape& start : starts(problem, options)) {
+  for (const FloorShape& start : starts(problem, options))
     solved.push_back(solver.solve(start, problem.mapped, 1));
-    if (std::getenv("TRY")) std::fprintf(stderr, "start %s it %d gap %.4f\n", solved.back().point.status.c_str(), solved.back().point.iterations, 1e3 * solved.back().point.gap);
-  }
   const Solved& best = *std::min_element(solved.begin(), solved.end(), better);
   front.starts = int(solved.size());
   for (const Solved& one : solved) {

@@ -12,16 +12,20 @@
 
 namespace drapeplan {
 
-/// The ply is a net of nodes: its fibres are the edges of the net along warp and weft. A drape obeys:
-///   - no fibre edge is longer than (1 + fibre_strain) times its flat length;
+/// The ply is a net of nodes, the mesh of a drape. A drape obeys:
+///   - in the middle of no cell warp or weft is stretched by more than fibre_strain: the measure that the
+///     elements of a drape have, and Score::max_fibre_strain;
 ///   - every node lies on or above the mold, over its extent (or the mapped ply, where that is larger);
 ///   - a pad is a rigid disc: nodes that it holds keep their places in it; its joint stands rig.joint_offset
 ///     above its middle along its normal; it tilts by rig.tilt_limit at most;
 ///   - interlinks have the lengths, and the play, that the rig says; the fixed joint keeps its x-y.
-/// It is a relaxation, so its optimum is a floor under every drape on this net. Left out are: all forces
-/// (shear, bending, friction, gravity, actuators), compression of fibres (folds finer than the net are free),
-/// the way to the end, rotation limits of pads other than the tilt limit, collisions of pads with the mold,
-/// interlinks with a stiffness (these may have any length), fibres of a cell between the edges of the net.
+///   - edge nodes lie within the boundary tolerance of the prescribed boundary (one way of the Hausdorff
+///     distance of the score, measured along the mold, of the mid-surface).
+/// It is a relaxation, so its optimum is a floor under every drape on this net that stretches fibres by no more
+/// than that (within the tolerances of floor.cpp, and if no start missed the global optimum). Left out are: all
+/// forces (shear, bending, friction, gravity, actuators), compression of fibres (folds finer than the net are
+/// free), the way to the end, rotation limits of pads other than the tilt limit, collisions of pads with the
+/// mold, interlinks with a stiffness (these may have any length).
 struct FloorProblem {
   RigOptions rig;
   Mold mold;
@@ -32,7 +36,8 @@ struct FloorProblem {
   std::vector<Eigen::Vector3d> boundary; ///< prescribed; closed polyline on the mold [m]
   Eigen::Vector2d fixed_place{0, 0};     ///< x-y of the fixed joint, used where rig.fixed is set [m]
   double thickness = 0;                  ///< of the ply; nodes are its mid-surface [m]
-  double fibre_strain = 0.01;           ///< largest tensile strain of a fibre [-]
+  /// Largest tensile strain of a fibre [-]. Simulated drapes of the shipped cases have up to 0.009.
+  double fibre_strain = 0.01; 
 };
 
 /// A piece of ply between two neighbouring grippers (or between the last gripper and the edge).
@@ -78,5 +83,12 @@ struct FloorFront {
 /// Never throws for a geometry that cannot be satisfied: `converged` is false then. Calls from several
 /// threads are served one after the other (see ipopt_lock.hpp).
 FloorFront solve_floor(const FloorProblem& problem, const FloorOptions& options = {});
+
+/// One line per boundary tolerance, with a head: tolerance, gap, r.m.s. gap, offset [mm].
+std::string front_table(const FloorFront& front);
+
+/// What the floor at the tolerance nearest to `tolerance` [m] means, for a process engineer, in a few
+/// sentences.
+std::string explain_floor(const FloorProblem& problem, const FloorFront& front, double tolerance = 0.010);
 
 }  // namespace drapeplan

@@ -22,6 +22,11 @@ struct CellFibre {
 /// Warp and weft of all cells that are not held by a single pad.
 std::vector<CellFibre> cell_fibres(const FloorProblem& problem);
 
+/// What holds a floor up, the most important first.
+/// @param multipliers  of the rows of `fibres`, first in the program; >= 0 but for round-off.
+std::vector<TautSpan> taut_spans(const FloorProblem& problem, const std::vector<CellFibre>& fibres,
+                                 const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& multipliers);
+
 /// Edge node `node` must satisfy lower <= direction . (x - place) <= upper.
 struct EdgeLimit {
   int node = 0;

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
-#include <cstdlib>
 
 #include "planner/reach/ipopt_lock.hpp"
 
@@ -143,16 +141,6 @@ void set_options(Ipopt::OptionsList& options, const IpoptSettings& settings) {
   options.SetStringValue("nlp_scaling_method", "none");  // the variables are of order 1 already
   options.SetStringValue("alpha_for_y", settings.long_dual_steps ? "bound-mult" : "primal");
   options.SetIntegerValue("mumps_pivot_order", settings.minimum_degree ? 0 : 7);
-  if (const char* more = std::getenv("IPO")) {
-    std::istringstream in(more);
-    std::string name, value;
-    while (in >> name >> value) {
-      char* end = nullptr;
-      const double number = std::strtod(value.c_str(), &end);
-      if (*end != 0) options.SetStringValue(name, value);
-      else if (!options.SetNumericValue(name, number)) options.SetIntegerValue(name, int(number));
-    }
-  }
 }
 
 }  // namespace
@@ -167,7 +155,7 @@ IpoptOutcome minimise(const SmoothProgram& program, const Eigen::VectorXd& start
   outcome.variables = start;
   const std::lock_guard<std::mutex> lock(ipopt_mutex());
 
-  Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(std::getenv("IPO") != nullptr);  // no console
+  Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);  // no console
   set_options(*application->Options(), settings);
   // An empty name: by default an ipopt.opt in the working directory would change the result.
   const Ipopt::ApplicationReturnStatus ready = application->Initialize("");
