@@ -239,6 +239,16 @@ FloorPoint failed_point(double tolerance, const std::string& why) {
 
 }  // namespace
 
+double net_strain(const FloorProblem& problem, const std::vector<Eigen::Vector3d>& nodes) {
+  double largest = -1;
+  for (const Fibre& fibre : fibres_of(problem)) {
+    Eigen::Vector3d along(0, 0, 0);
+    for (size_t c = 0; c < size_t(fibre.count); ++c) along += fibre.coefficient[c] * nodes[size_t(fibre.corner[c])];
+    largest = std::max(largest, along.norm() - 1);
+  }
+  return largest;
+}
+
 FloorFront solve_floor(const FloorProblem& problem, const FloorOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   FloorFront front;

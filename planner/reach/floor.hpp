@@ -13,8 +13,8 @@
 namespace drapeplan {
 
 /// The ply is a net of nodes, the mesh of a drape. A drape obeys:
-///   - in the middle of no cell warp or weft is stretched by more than fibre_strain: the measure that the
-///     elements of a drape have, and Score::max_fibre_strain;
+///   - no fibre is stretched by more than fibre_strain: along edges of the net, and in cells at the outline in
+///     their middle (see fibres_of); net_strain() measures a drape so;
 ///   - every node lies on or above the mold, over its extent (or the mapped ply, where that is larger);
 ///   - a pad is a rigid disc: nodes that it holds keep their places in it; its joint stands rig.joint_offset
 ///     above its middle along its normal; it tilts by rig.tilt_limit at most;
@@ -79,6 +79,10 @@ struct FloorFront {
   double start_spread = 0;
   double wall_seconds = 0;
 };
+
+/// Largest strain of a fibre of a net at these places [m], in the measure of FloorProblem::fibre_strain [-]: a
+/// drape for which it is smaller lies above the floor.
+double net_strain(const FloorProblem& problem, const std::vector<Eigen::Vector3d>& nodes);
 
 /// Never throws for a geometry that cannot be satisfied: `converged` is false then. Calls from several
 /// threads are served one after the other (see ipopt_lock.hpp).

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "planner/reach/nlp.hpp"
@@ -12,6 +13,7 @@ namespace drapeplan {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kAligned = 1e-9;  // [m]: ends of a fibre differ by less across it
 /// Weight of mean square gap and distance from the mapped net against the largest gap, all in units of the
 /// spacing. With means of (5 mm)^2 and a spacing of 100 mm the optimum moves by less than 0.3 um.
 constexpr double kRegularisation = 1e-3;
@@ -70,24 +72,40 @@ DistanceJet distance_jet(const Mold& mold, const Eigen::Vector3d& place, double 
 
 }  // namespace
 
-std::vector<CellFibre> cell_fibres(const FloorProblem& problem) {
+std::vector<Fibre> fibres_of(const FloorProblem& problem) {
   const std::vector<int> pad = pad_of_nodes(problem);
-  std::vector<CellFibre> fibres;
+  const std::vector<Eigen::Vector2d>& rest = problem.net.rest;
+  std::vector<bool> outline(rest.size(), false);
+  for (const int node : problem.net.outline) outline[size_t(node)] = true;
+  std::map<std::array<int, 2>, int> edges;  // and how many cells they have
+  std::vector<Fibre> fibres;
   for (const auto& quad : problem.net.quads) {
-    bool rigid = true;
-    for (const int corner : quad)
-      rigid = rigid && pad[size_t(corner)] >= 0 && pad[size_t(corner)] == pad[size_t(quad[0])];
-    if (rigid) continue;
+    bool rigid = true, middle = false;
+    for (size_t c = 0; c < 4; ++c) {
+      const int i = quad[c], j = quad[(c + 1) % 4];
+      rigid = rigid && pad[size_t(i)] >= 0 && pad[size_t(i)] == pad[size_t(quad[0])];
+      middle = middle || outline[size_t(i)] || i == j;
+      if (i != j) ++edges[{std::min(i, j), std::max(i, j)}];
+    }
+    if (rigid || !middle) continue;
     // The mean deformation gradient maps both flat diagonals to the deformed ones.
     Eigen::Matrix2d flat;
-    for (size_t d = 0; d < 2; ++d)
-      flat.col(int(d)) = problem.net.rest[size_t(quad[d + 2])] - problem.net.rest[size_t(quad[d])];
+    for (size_t d = 0; d < 2; ++d) flat.col(int(d)) = rest[size_t(quad[d + 2])] - rest[size_t(quad[d])];
     const Eigen::Matrix2d inverse = flat.inverse();
     for (const int weft : {0, 1}) {
       const double first = inverse(0, weft), second = inverse(1, weft);
       const double length = 1 / (std::abs(first) + std::abs(second));  // of a rectangle: its side
-      fibres.push_back({quad, {-first, -second, first, second}, weft == 1, length});
+      fibres.push_back({4, quad, {-first, -second, first, second}, weft == 1, length});
     }
+  }
+  for (const auto& [ends, cells] : edges) {
+    const auto i = size_t(ends[0]), j = size_t(ends[1]);
+    const Eigen::Vector2d way = rest[j] - rest[i];
+    const bool warp = std::abs(way.y()) <= kAligned, weft = std::abs(way.x()) <= kAligned;
+    const bool same_pad = pad[i] >= 0 && pad[i] == pad[j];
+    if (cells < 2 || warp == weft || same_pad) continue;
+    const double length = way.norm();
+    fibres.push_back({2, {ends[0], ends[1], -1, -1}, {-1 / length, 1 / length, 0, 0}, weft, length});
   }
   return fibres;
 }
@@ -97,7 +115,7 @@ FloorNlp::FloorNlp(const FloorProblem& problem, const std::vector<EdgeLimit>& li
       limits_(&limits),
       unit_(problem.rig.spacing),
       half_(0.5 * problem.thickness / problem.rig.spacing),
-      fibres_(cell_fibres(problem)),
+      fibres_(fibres_of(problem)),
       pad_(pad_of_nodes(problem)),
       nodes_(problem.net.node_count()),
       pads_(problem.rig.count()),
@@ -172,9 +190,9 @@ std::vector<Eigen::Vector3d> FloorNlp::joints_at(const VectorRef& v) const {
   return joints;
 }
 
-Eigen::Vector3d FloorNlp::fibre(const CellFibre& of, const std::vector<NodeJet>& all) const {
+Eigen::Vector3d FloorNlp::fibre(const Fibre& of, const std::vector<NodeJet>& all) const {
   Eigen::Vector3d sum(0, 0, 0);
-  for (size_t c = 0; c < 4; ++c) sum += of.coefficient[c] * unit_ * all[size_t(of.corner[c])].value;
+  for (size_t c = 0; c < size_t(of.count); ++c) sum += of.coefficient[c] * unit_ * all[size_t(of.corner[c])].value;
   return sum;
 }
 
@@ -320,9 +338,9 @@ template <class Sink>
 void FloorNlp::jacobian(const VectorRef& v, Sink& sink) const {
   const std::vector<NodeJet> all = jets(v);
   for (size_t k = 0; k < fibres_.size(); ++k) {
-    const CellFibre& cell = fibres_[k];
+    const Fibre& cell = fibres_[k];
     const Eigen::Vector3d along = fibre(cell, all) * cell.length;
-    for (size_t c = 0; c < 4; ++c)
+    for (size_t c = 0; c < size_t(cell.count); ++c)
       add_place(sink, int(k), cell.corner[c], all[size_t(cell.corner[c])], cell.coefficient[c] * along);
   }
   int row = row_.gap;
@@ -400,33 +418,28 @@ void FloorNlp::hessian(const VectorRef& v, double sigma, const VectorRef& multip
   std::vector<double> stiffness(size_t(nodes_), 0.0);
   std::vector<Eigen::Vector3d> force(size_t(nodes_), {0, 0, 0});
   std::vector<Eigen::Matrix<double, 9, 9>> pads(size_t(pads_), Eigen::Matrix<double, 9, 9>::Zero());
-  for (size_t k = 0; k < fibres_.size(); k += 2) {  // warp and weft of a cell
-    Eigen::Matrix4d weights_of = Eigen::Matrix4d::Zero();
-    for (const size_t row : {k, k + 1}) {
-      const CellFibre& cell = fibres_[row];
-      const double tension = multipliers[int(row)] * cell.length * unit_;
-      const Eigen::Vector3d pull = tension / unit_ * fibre(cell, all);
-      const Eigen::Vector4d c = Eigen::Map<const Eigen::Vector4d>(cell.coefficient.data());
-      weights_of += tension * c * c.transpose();
-      for (size_t i = 0; i < 4; ++i) force[size_t(cell.corner[i])] += c[int(i)] * pull;
-    }
-    const std::array<int, 4>& corner = fibres_[k].corner;
-    for (int i = 0; i < 4; ++i) {
-      const int p = corner[size_t(i)];
-      stiffness[size_t(p)] += weights_of(i, i);
-      for (int j = 0; j < i; ++j) {
-        const int q = corner[size_t(j)];
+  for (size_t k = 0; k < fibres_.size(); ++k) {
+    const Fibre& cell = fibres_[k];
+    const double tension = multipliers[int(k)] * cell.length * unit_;
+    const Eigen::Vector3d pull = tension / unit_ * fibre(cell, all);
+    for (size_t i = 0; i < size_t(cell.count); ++i) {
+      const int p = cell.corner[i];
+      const double first = cell.coefficient[i];
+      force[size_t(p)] += first * pull;
+      stiffness[size_t(p)] += tension * first * first;
+      for (size_t j = 0; j < i; ++j) {
+        const int q = cell.corner[j];
+        const double weight = tension * first * cell.coefficient[j];
         if (p == q) {  // of a triangle
-          stiffness[size_t(p)] += 2 * weights_of(i, j);
+          stiffness[size_t(p)] += 2 * weight;
         } else if (is_held(p) && pad_[size_t(p)] == pad_[size_t(q)]) {
           const Eigen::Vector3d wp = weights(p), wq = weights(q);
           for (int r = 0; r < 9; ++r) {
             for (int c = r % 3; c < 9; c += 3)
-              pads[size_t(pad_[size_t(p)])](r, c) +=
-                  weights_of(i, j) * (wp[r / 3] * wq[c / 3] + wq[r / 3] * wp[c / 3]);
+              pads[size_t(pad_[size_t(p)])](r, c) += weight * (wp[r / 3] * wq[c / 3] + wq[r / 3] * wp[c / 3]);
           }
         } else {
-          add_pair(sink, p, q, all, weights_of(i, j));
+          add_pair(sink, p, q, all, weight);
         }
       }
     }

@@ -10,21 +10,23 @@
 
 namespace drapeplan {
 
-/// The mean fibre of one cell: f = sum of coefficient * place of corner, its flat length is 1. This is the fibre
-/// vector at the cell's middle, the one that the elements of a drape and its score know.
-struct CellFibre {
+/// A piece of fibre: f = sum of coefficient * place of corner over `count` corners; its flat length is 1.
+struct Fibre {
+  int count = 2;                           ///< 2: an edge of the net; 4: the mean of a cell
   std::array<int, 4> corner{0, 0, 0, 0};
   std::array<double, 4> coefficient{0, 0, 0, 0};  ///< [1/m]
   bool weft = false;
-  double length = 0;  ///< of the flat cell along it [m]
+  double length = 0;  ///< flat [m]
 };
 
-/// Warp and weft of all cells that are not held by a single pad.
-std::vector<CellFibre> cell_fibres(const FloorProblem& problem);
+/// All fibres of the net that are not held by a single pad: edges along warp and weft between two cells, and
+/// warp and weft in the middle of each cell that has a node on the outline or an edge across the fibres. (The
+/// outline itself may bend in its plane: drapes have strains there that twice exceed those of their cells.)
+std::vector<Fibre> fibres_of(const FloorProblem& problem);
 
 /// What holds a floor up, the most important first.
 /// @param multipliers  of the rows of `fibres`, first in the program; >= 0 but for round-off.
-std::vector<TautSpan> taut_spans(const FloorProblem& problem, const std::vector<CellFibre>& fibres,
+std::vector<TautSpan> taut_spans(const FloorProblem& problem, const std::vector<Fibre>& fibres,
                                  const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& multipliers);
 
 /// Edge node `node` must satisfy lower <= direction . (x - place) <= upper.
@@ -47,7 +49,7 @@ struct FloorShape {
 /// and unit vectors a, b. Variables: x, y, g of each free node or g of a held one, in the order of the nodes;
 /// c, a, b and the joint q of each pad; the largest gap t. Minimised: t plus a small multiple of the net's
 /// mean square gap and in-plane distance from the mapped net, which makes the solution unique.
-/// Rows: one per fibre of a cell; per node g <= t; per held node that g is its distance from the mold; per pad
+/// Rows: one per fibre; per node g <= t; per held node that g is its distance from the mold; per pad
 /// three of its unit vectors, three of its joint and one of its tilt; per interlink; per edge limit.
 class FloorNlp final : public SmoothProgram {
  public:
@@ -61,7 +63,7 @@ class FloorNlp final : public SmoothProgram {
   [[nodiscard]] std::vector<Eigen::Vector3d> joints_at(const VectorRef& v) const;
   /// Largest gap t [m].
   [[nodiscard]] double largest_gap(const VectorRef& v) const { return v[level_] * unit_; }
-  [[nodiscard]] const std::vector<CellFibre>& fibres() const { return fibres_; }
+  [[nodiscard]] const std::vector<Fibre>& fibres() const { return fibres_; }
   [[nodiscard]] double unit() const { return unit_; }
 
   [[nodiscard]] Form form() const override;
@@ -88,7 +90,7 @@ class FloorNlp final : public SmoothProgram {
   [[nodiscard]] int pad_at(int pad) const { return first_pad_ + 12 * pad; }
   /// Weights of c, a and b in a held node's place [-, spacing, spacing].
   [[nodiscard]] Eigen::Vector3d weights(int node) const;
-  [[nodiscard]] Eigen::Vector3d fibre(const CellFibre& of, const std::vector<NodeJet>& all) const;
+  [[nodiscard]] Eigen::Vector3d fibre(const Fibre& of, const std::vector<NodeJet>& all) const;
   [[nodiscard]] std::vector<NodeJet> jets(const VectorRef& v) const;
   [[nodiscard]] Eigen::Vector3d held_place(const VectorRef& v, int node) const;
   /// d(row)/d(node's variables) for a row whose derivative by the node's place is `by_place`.
@@ -104,7 +106,7 @@ class FloorNlp final : public SmoothProgram {
   const FloorProblem* problem_;
   const std::vector<EdgeLimit>* limits_;
   double unit_, half_;  ///< [m]; half the thickness [unit]
-  std::vector<CellFibre> fibres_;
+  std::vector<Fibre> fibres_;
   std::vector<int> pad_;    ///< that holds the node, or -1
   std::vector<std::array<int, 2>> links_;
   std::vector<int> first_;  ///< variable of each node

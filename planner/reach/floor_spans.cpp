@@ -66,18 +66,18 @@ std::string span_words(const RigOptions& rig, const TautSpan& span) {
 
 }  // namespace
 
-std::vector<TautSpan> taut_spans(const FloorProblem& problem, const std::vector<CellFibre>& fibres,
+std::vector<TautSpan> taut_spans(const FloorProblem& problem, const std::vector<Fibre>& fibres,
                                  const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& multipliers) {
   const double stretch = 1 + problem.fibre_strain;
   std::map<SpanKey, std::map<long, Line>> spans;  // lines by their place across, in micrometres
   for (size_t k = 0; k < fibres.size(); ++k) {
-    const CellFibre& cell = fibres[k];
+    const Fibre& cell = fibres[k];
     Eigen::Vector2d middle(0, 0);
     Eigen::Vector3d place(0, 0, 0), fibre(0, 0, 0);
-    for (size_t c = 0; c < 4; ++c) {
+    for (size_t c = 0; c < size_t(cell.count); ++c) {
       const auto node = size_t(cell.corner[c]);
-      middle += 0.25 * problem.net.rest[node];
-      place += 0.25 * nodes[node];
+      middle += problem.net.rest[node] / cell.count;
+      place += nodes[node] / cell.count;
       fibre += cell.coefficient[c] * nodes[node];
     }
     const Eigen::Vector3d half = 0.5 * cell.length * fibre;
