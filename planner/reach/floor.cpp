@@ -131,7 +131,8 @@ FloorPoint point_of(const FloorProblem& problem, const FloorNlp& nlp, const Ipop
   const Eigen::VectorXd& v = outcome.variables;
   point.violation = violation(nlp, v) * nlp.unit();
   point.converged = outcome.converged && point.violation <= kLengthTolerance;
-  point.status = outcome.status;
+  point.status = outcome.infeasible ? "no net keeps fibres, interlinks, tilt limits and boundary at once"
+                                    : outcome.status;
   point.iterations = outcome.iterations;
   point.nodes = nlp.nodes_at(v);
   point.joints = nlp.joints_at(v);
