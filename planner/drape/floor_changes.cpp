@@ -116,7 +116,8 @@ std::vector<ChangedFloor> solve_changes(const std::vector<FloorChange>& changes,
 std::string explain_changes(const FloorPoint& floor, const std::vector<ChangedFloor>& changes) {
   std::vector<const ChangedFloor*> sorted;
   for (const ChangedFloor& change : changes) {
-    if (floor.converged && change.point.converged && change.point.gap < floor.gap - kTold) sorted.push_back(&change);
+    const bool lower = change.point.converged && (!floor.converged || change.point.gap < floor.gap - kTold);
+    if (lower) sorted.push_back(&change);
   }
   if (sorted.empty()) return "";
   std::stable_sort(sorted.begin(), sorted.end(),

@@ -174,7 +174,8 @@ DrapeProblem::DrapeProblem(Case definition)
     : case_(std::move(definition)),
       map_(map_case(case_)),
       reach_problem_(reach_problem_of(case_, map_.targets)),
-      reach_(std::make_unique<Lazy<ReachResult>>()) {
+      reach_(std::make_unique<Lazy<ReachResult>>()),
+      ply_floor_(std::make_unique<Lazy<PlyFloor>>()) {
   case_.grippers = reach_problem_.rig;  // with mapped interlinks
   for (const auto& entry : case_.fidelities) models_[entry.first] = std::make_unique<Lazy<Model>>();
   const bool reachable = case_.schedule.aim == Aim::reachable;
@@ -196,6 +197,22 @@ DrapeProblem::DrapeProblem(Case definition)
 
 const ReachResult& DrapeProblem::reach() const {
   return reach_->get([this] { return solve_reach(reach_problem_, kReachStarts, case_.optimise.seed); });
+}
+
+const PlyFloor& DrapeProblem::ply_floor() const {
+  return ply_floor_->get([this]() -> PlyFloor {
+    try {
+      const FloorProblem problem = floor_problem_of(case_, map_);
+      FloorOptions options;
+      options.random_starts = 0;
+      options.seed = case_.optimise.seed;
+      FloorFront front = solve_floor(problem, options);
+      std::string meaning = explain_floor(problem, front);
+      return {std::move(front), std::move(meaning)};
+    } catch (const WrongInput& error) {  // the outline needs smaller cells
+      return {{}, std::string("The floor of the ply was not looked for: ") + error.what()};
+    }
+  });
 }
 
 const Model& DrapeProblem::model(const std::string& fidelity) const {

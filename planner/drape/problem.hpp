@@ -52,6 +52,12 @@ struct RunPart {
   double pause = 0;
 };
 
+/// The best that any schedule could do with the ply, in numbers and in words.
+struct PlyFloor {
+  FloorFront front;  ///< without points if the ply has no net
+  std::string meaning;
+};
+
 /// Shared by all threads: whoever asks first for a model or the reach floor makes it, the others wait for it.
 class DrapeProblem {
  public:
@@ -64,6 +70,8 @@ class DrapeProblem {
   [[nodiscard]] const MapResult& mapping() const { return map_; }
   [[nodiscard]] const ReachProblem& reach_problem() const { return reach_problem_; }
   [[nodiscard]] const ReachResult& reach() const;
+  /// With cells of 20 mm; takes seconds.
+  [[nodiscard]] const PlyFloor& ply_floor() const;
   [[nodiscard]] const SequenceFrame& frame() const { return frame_; }
   /// @throws std::out_of_range if the case has no such fidelity, WrongInput if its model cannot be
   /// built.
@@ -96,6 +104,7 @@ class DrapeProblem {
   ReachProblem reach_problem_;
   SequenceFrame frame_;
   std::unique_ptr<Lazy<ReachResult>> reach_;
+  std::unique_ptr<Lazy<PlyFloor>> ply_floor_;
   std::map<std::string, std::unique_ptr<Lazy<Model>>> models_;
 };
 
