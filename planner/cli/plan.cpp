@@ -116,6 +116,8 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
   return {{"case", problem.definition().name},
           {"terms", problem.model(kReport).term_names()},
           {"reach", reach},
+          {"front", front_json(problem.ply_floor().front)},
+          {"floor", problem.ply_floor().meaning},
           {"map",
            {{"max_shear_deg", problem.mapping().max_shear_deg},
             {"mean_shear_deg", problem.mapping().mean_shear_deg}}},
@@ -141,10 +143,11 @@ struct PlannedCase {
 
 /// What was found before the search begins.
 void print_start(const DrapeProblem& problem) {
-  std::cerr << fmt::format("{}: mapped, shear at most {:g} deg\n  terms: {}\n  reach: {}\n",
+  std::cerr << fmt::format("{}: mapped, shear at most {:g} deg\n  terms: {}\n  reach: {}\n{}  {}\n",
                            problem.definition().name, problem.mapping().max_shear_deg,
                            terms_line(problem.model(kReport)),
-                           explain_reach(problem.reach_problem(), problem.reach()));
+                           explain_reach(problem.reach_problem(), problem.reach()),
+                           front_table(problem.ply_floor().front), problem.ply_floor().meaning);
 }
 
 std::string result_text(const DrapeProblem& problem, const PlanResult& result,

@@ -73,6 +73,20 @@ bool waits_for_mapping(const Case& definition) {
          definition.grippers->interlinks->lengths.empty();
 }
 
+/// Nodes under each pad: those that GripperRig ties to it.
+std::vector<std::vector<int>> held_nodes(const RigOptions& rig, const std::vector<Eigen::Vector2d>& rest) {
+  const double reach = reach_of_pads(rig, rest);
+  std::vector<std::vector<int>> held(size_t(rig.count()));
+  for (size_t n = 0; n < rest.size(); ++n) {
+    int nearest = 0;
+    for (int g = 1; g < rig.count(); ++g) {
+      if ((rest[n] - rig.place(g)).norm() < (rest[n] - rig.place(nearest)).norm()) nearest = g;
+    }
+    if ((rest[n] - rig.place(nearest)).norm() <= reach) held[size_t(nearest)].push_back(int(n));
+  }
+  return held;
+}
+
 /// Holds all nodes of the mesh's edge on the given piece.
 Grip grip_of(const GripOptions& options, const Mesh& mesh) {
   Grip grip{options.name, {}, options.velocity, options.ramp};
@@ -141,11 +155,28 @@ ReachProblem reach_problem_of(const Case& definition, const std::vector<Eigen::V
   return problem;
 }
 
+FloorProblem floor_problem_of(const Case& definition, const MapResult& map, double cell) {
+  const RigOptions& rig = *definition.grippers;
+  FloorProblem problem{rig, *definition.mold, mesh_of(definition, cell), {}, {}, {}, map.boundary};
+  if (waits_for_mapping(definition)) set_mapped_interlinks(definition, map.targets, problem.rig);
+  problem.held = held_nodes(rig, problem.net.rest);
+  for (const Eigen::Vector2d& rest : problem.net.rest) {
+    const Eigen::Vector2d inside(std::clamp(rest.x(), map.net.u.front(), map.net.u.back()),
+                                 std::clamp(rest.y(), map.net.v.front(), map.net.v.back()));
+    problem.mapped.push_back(mapped_point(map.net, *definition.mold, inside));
+    problem.flat.push_back(definition.ply.position + Eigen::Rotation2Dd(definition.ply.angle) * rest);
+  }
+  if (rig.fixed) problem.fixed_place = start_of_joint(definition, rig.gripper_at(*rig.fixed));
+  problem.thickness = definition.material.thickness;
+  return problem;
+}
+
 DrapeProblem::DrapeProblem(Case definition)
     : case_(std::move(definition)),
       map_(map_case(case_)),
       reach_problem_(reach_problem_of(case_, map_.targets)),
-      reach_(std::make_unique<Lazy<ReachResult>>()) {
+      reach_(std::make_unique<Lazy<ReachResult>>()),
+      ply_floor_(std::make_unique<Lazy<PlyFloor>>()) {
   case_.grippers = reach_problem_.rig;  // with mapped interlinks
   for (const auto& entry : case_.fidelities) models_[entry.first] = std::make_unique<Lazy<Model>>();
   const bool reachable = case_.schedule.aim == Aim::reachable;
@@ -168,6 +199,22 @@ DrapeProblem::DrapeProblem(Case definition)
 
 const ReachResult& DrapeProblem::reach() const {
   return reach_->get([this] { return solve_reach(reach_problem_, kReachStarts, case_.optimise.seed); });
+}
+
+const PlyFloor& DrapeProblem::ply_floor() const {
+  return ply_floor_->get([this]() -> PlyFloor {
+    try {
+      const FloorProblem problem = floor_problem_of(case_, map_);
+      FloorOptions options;
+      options.random_starts = 0;
+      options.seed = case_.optimise.seed;
+      FloorFront front = solve_floor(problem, options);
+      std::string meaning = explain_floor(problem, front);
+      return {std::move(front), std::move(meaning)};
+    } catch (const WrongInput& error) {  // the outline needs smaller cells
+      return {{}, std::string("The floor of the ply was not looked for: ") + error.what()};
+    }
+  });
 }
 
 const Model& DrapeProblem::model(const std::string& fidelity) const {

@@ -14,6 +14,7 @@
 #include "planner/drape/map_result.hpp"
 #include "planner/drape/score.hpp"
 #include "planner/drape/strategy.hpp"
+#include "planner/reach/floor.hpp"
 #include "planner/reach/reach.hpp"
 
 namespace drapeplan {
@@ -32,6 +33,11 @@ Model model_of(const Case& definition, const FemOptions& options);
 /// The reach problem of a case with grippers. @param targets  mapped places of the pads [m].
 ReachProblem reach_problem_of(const Case& definition, const std::vector<Eigen::Vector3d>& targets);
 
+/// The floor of a case with grippers, on the mesh that a drape at this mesh size has, held where a drape is.
+/// @param cell  mesh size [m].
+/// @throws WrongInput if there is no such mesh.
+FloorProblem floor_problem_of(const Case& definition, const MapResult& map, double cell = 0.020);
+
 /// One simulated drape with its score.
 struct Drape {
   RunResult run;
@@ -47,6 +53,12 @@ struct RunPart {
   double pause = 0;
 };
 
+/// The best that any schedule could do with the ply, in numbers and in words.
+struct PlyFloor {
+  FloorFront front;  ///< without points if the ply has no net
+  std::string meaning;
+};
+
 /// Shared by all threads: whoever asks first for a model or the reach floor makes it, the others wait for it.
 class DrapeProblem {
  public:
@@ -59,6 +71,8 @@ class DrapeProblem {
   [[nodiscard]] const MapResult& mapping() const { return map_; }
   [[nodiscard]] const ReachProblem& reach_problem() const { return reach_problem_; }
   [[nodiscard]] const ReachResult& reach() const;
+  /// With cells of 20 mm; takes seconds.
+  [[nodiscard]] const PlyFloor& ply_floor() const;
   [[nodiscard]] const SequenceFrame& frame() const { return frame_; }
   /// @throws std::out_of_range if the case has no such fidelity, WrongInput if its model cannot be
   /// built.
@@ -95,6 +109,7 @@ class DrapeProblem {
   ReachProblem reach_problem_;
   SequenceFrame frame_;
   std::unique_ptr<Lazy<ReachResult>> reach_;
+  std::unique_ptr<Lazy<PlyFloor>> ply_floor_;
   std::map<std::string, std::unique_ptr<Lazy<Model>>> models_;
 };
 

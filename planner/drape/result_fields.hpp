@@ -12,6 +12,7 @@
 
 #include "fem/core/run_summary.hpp"
 #include "planner/drape/score.hpp"
+#include "planner/reach/floor.hpp"
 
 namespace drapeplan {
 
@@ -77,6 +78,20 @@ inline void add_scores(const Score& score, const std::optional<OtherScore>& othe
   const bool takes_after = other && other->before;
   out["score"] = score_json(takes_after ? other->score : score);
   if (other) out["score_pressed"] = score_json(takes_after ? score : other->score);
+}
+
+/// Of a front of floors: one object per boundary tolerance, null for free.
+inline nlohmann::json front_json(const FloorFront& front) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const FloorPoint& point : front.points) {
+    list.push_back({{"boundary_tolerance", finite(point.boundary_tolerance)},
+                    {"gap_floor", finite(point.gap)},
+                    {"rms_gap", finite(point.rms_gap)},
+                    {"boundary_offset", finite(point.boundary_offset)},
+                    {"converged", point.converged},
+                    {"status", point.status}});
+  }
+  return list;
 }
 
 /// Without the figures of what the scene does not have.

@@ -7,15 +7,12 @@
 #include <IpTNLP.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "planner/reach/ipopt_lock.hpp"
 
 namespace drapeplan {
 namespace {
-
-constexpr double kTolerance = 1e-11;  // of optimality and constraints; lengths are in units of the spacing
-constexpr int kMaxIterations = 300;   // a solvable problem takes 10 to 30
-constexpr double kMaxCpuSeconds = 5;  // of the whole process, all threads: a guard against a hang only
 
 using Ipopt::Index;
 using Ipopt::Number;
@@ -30,7 +27,7 @@ bool give(const Eigen::VectorXd& values, Number* result) {
   return values.allFinite();
 }
 
-void give_pattern(const ReachNlp::Pattern& pattern, Index* rows, Index* columns) {
+void give_pattern(const SmoothProgram::Pattern& pattern, Index* rows, Index* columns) {
   for (const auto& [row, column] : pattern) {
     *rows++ = row;
     *columns++ = column;
@@ -39,21 +36,21 @@ void give_pattern(const ReachNlp::Pattern& pattern, Index* rows, Index* columns)
 
 class Adapter final : public Ipopt::TNLP {
  public:
-  Adapter(const ReachNlp& nlp, const Eigen::VectorXd& start, IpoptOutcome& outcome)
-      : nlp_(nlp), start_(start), outcome_(outcome) {}
+  Adapter(const SmoothProgram& program, const Eigen::VectorXd& start, IpoptOutcome& outcome)
+      : program_(program), form_(program.form()), start_(start), outcome_(outcome) {}
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
-    n = nlp_.variables();
-    m = nlp_.constraints();
-    jacobian = Index(nlp_.jacobian_pattern().size());
-    hessian = Index(nlp_.hessian_pattern().size());
+    n = Index(form_.variables.lower.size());
+    m = Index(form_.constraints.lower.size());
+    jacobian = Index(form_.jacobian.size());
+    hessian = Index(form_.hessian.size());
     style = C_STYLE;
     return true;
   }
 
   bool get_bounds_info(Index, Number* x_lower, Number* x_upper, Index, Number* g_lower,
                        Number* g_upper) override {
-    const ReachNlp::Bounds x = nlp_.variable_bounds(), g = nlp_.constraint_bounds();
+    const SmoothProgram::Bounds &x = form_.variables, &g = form_.constraints;
     std::copy(x.lower.begin(), x.lower.end(), x_lower);  // Ipopt takes bounds beyond 1e19 for none
     std::copy(x.upper.begin(), x.upper.end(), x_upper);
     std::copy(g.lower.begin(), g.lower.end(), g_lower);
@@ -66,40 +63,45 @@ class Adapter final : public Ipopt::TNLP {
   }
 
   bool eval_f(Index n, const Number* x, bool, Number& value) override {
-    value = nlp_.objective(view(x, n));
+    value = program_.objective(view(x, n), nullptr);
     return std::isfinite(value);
   }
 
   bool eval_grad_f(Index n, const Number* x, bool, Number* gradient) override {
-    return give(nlp_.gradient(view(x, n)), gradient);
+    Eigen::VectorXd values;
+    const double objective = program_.objective(view(x, n), &values);
+    return give(values, gradient) && std::isfinite(objective);
   }
 
   bool eval_g(Index n, const Number* x, bool, Index, Number* values) override {
-    return give(nlp_.constraint_values(view(x, n)), values);
+    return give(program_.constraint_values(view(x, n)), values);
   }
 
   bool eval_jac_g(Index n, const Number* x, bool, Index, Index, Index* rows, Index* columns,
                   Number* values) override {
-    if (values != nullptr) return give(nlp_.jacobian_values(view(x, n)), values);
-    give_pattern(nlp_.jacobian_pattern(), rows, columns);
+    if (values != nullptr) return give(program_.jacobian_values(view(x, n)), values);
+    give_pattern(form_.jacobian, rows, columns);
     return true;
   }
 
   bool eval_h(Index n, const Number* x, bool, Number sigma, Index m, const Number* multipliers, bool, Index,
               Index* rows, Index* columns, Number* values) override {
-    if (values != nullptr) return give(nlp_.hessian_values(view(x, n), sigma, view(multipliers, m)), values);
-    give_pattern(nlp_.hessian_pattern(), rows, columns);
+    if (values != nullptr) return give(program_.hessian_values(view(x, n), sigma, view(multipliers, m)), values);
+    give_pattern(form_.hessian, rows, columns);
     return true;
   }
 
-  void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number*, const Number*, Index,
-                         const Number*, const Number*, Number, const Ipopt::IpoptData*,
+  void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number*, const Number*, Index m,
+                         const Number*, const Number* multipliers, Number, const Ipopt::IpoptData* data,
                          Ipopt::IpoptCalculatedQuantities*) override {
     outcome_.variables = view(x, n);
+    outcome_.multipliers = view(multipliers, m);
+    if (data != nullptr) outcome_.iterations = data->iter_count();
   }
 
  private:
-  const ReachNlp& nlp_;
+  const SmoothProgram& program_;
+  const SmoothProgram::Form form_;
   const Eigen::VectorXd& start_;
   IpoptOutcome& outcome_;
 };
@@ -129,6 +131,20 @@ std::string in_words(Ipopt::ApplicationReturnStatus status) {
   }
 }
 
+void set_options(Ipopt::OptionsList& options, const IpoptSettings& settings) {
+  options.SetIntegerValue("print_level", 0);
+  options.SetNumericValue("tol", settings.tolerance);
+  options.SetNumericValue("constr_viol_tol", settings.tolerance);
+  options.SetIntegerValue("max_iter", settings.max_iterations);
+  options.SetNumericValue("max_cpu_time", settings.max_cpu_seconds);
+  options.SetNumericValue("mu_init", settings.barrier);
+  options.SetNumericValue("bound_push", settings.push);
+  options.SetNumericValue("bound_frac", settings.push);
+  options.SetStringValue("nlp_scaling_method", "none");  // the variables are of order 1 already
+  options.SetStringValue("alpha_for_y", settings.long_dual_steps ? "bound-mult" : "primal");
+  options.SetIntegerValue("mumps_pivot_order", settings.minimum_degree ? 0 : 7);
+}
+
 }  // namespace
 
 std::mutex& ipopt_mutex() {
@@ -136,29 +152,35 @@ std::mutex& ipopt_mutex() {
   return mutex;
 }
 
-IpoptOutcome minimise(const ReachNlp& nlp, const Eigen::VectorXd& start) {
+IpoptOutcome minimise(const SmoothProgram& program, const Eigen::VectorXd& start, const IpoptSettings& settings) {
   IpoptOutcome outcome;
   outcome.variables = start;
   const std::lock_guard<std::mutex> lock(ipopt_mutex());
 
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);  // no console
-  application->Options()->SetIntegerValue("print_level", 0);
-  application->Options()->SetNumericValue("tol", kTolerance);
-  application->Options()->SetNumericValue("constr_viol_tol", kTolerance);
-  application->Options()->SetIntegerValue("max_iter", kMaxIterations);
-  application->Options()->SetNumericValue("max_cpu_time", kMaxCpuSeconds);
-  application->Options()->SetStringValue("nlp_scaling_method",
-                                         "none");  // the variables are of order 1 already
+  set_options(*application->Options(), settings);
   // An empty name: by default an ipopt.opt in the working directory would change the result.
   const Ipopt::ApplicationReturnStatus ready = application->Initialize("");
   if (ready != Ipopt::Solve_Succeeded) {
     outcome.status = in_words(ready);
     return outcome;
   }
-  const Ipopt::ApplicationReturnStatus status = application->OptimizeTNLP(new Adapter(nlp, start, outcome));
+  const Ipopt::ApplicationReturnStatus status =
+      application->OptimizeTNLP(new Adapter(program, start, outcome));
   outcome.converged = status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level;
+  outcome.infeasible = status == Ipopt::Infeasible_Problem_Detected;
   outcome.status = in_words(status);
   return outcome;
+}
+
+double violation(const SmoothProgram& program, const SmoothProgram::VectorRef& v) {
+  const Eigen::VectorXd c = program.constraint_values(v);
+  const SmoothProgram::Bounds bounds = program.form().constraints;
+  if (!c.allFinite()) return std::numeric_limits<double>::infinity();
+  double largest = 0;
+  for (int k = 0; k < c.size(); ++k)
+    largest = std::max({largest, bounds.lower[k] - c[k], c[k] - bounds.upper[k]});
+  return largest;
 }
 
 }  // namespace drapeplan

@@ -1,20 +1,34 @@
-// Solves one reach NLP with Ipopt.
+// Solves one smooth program with Ipopt.
 #pragma once
 
 #include <Eigen/Core>
 #include <string>
 
-#include "planner/reach/nlp.hpp"
+#include "planner/reach/program.hpp"
 
 namespace drapeplan {
 
-struct IpoptOutcome {
-  bool converged = false;
-  std::string status;         ///< in words
-  Eigen::VectorXd variables;  ///< the last iterate, whether converged or not
+struct IpoptSettings {
+  double tolerance = 1e-11;     ///< of optimality and constraints
+  int max_iterations = 300;     ///< a solvable reach problem takes 10 to 30
+  double max_cpu_seconds = 5;   ///< of the whole process, all threads: a guard against a hang only
+  double barrier = 0.1;         ///< the first barrier parameter; small where the start is near a solution
+  double push = 1e-2;           ///< how far starts are moved away from their bounds, at most
+  bool long_dual_steps = false; ///< multipliers take the step of the bounds' multipliers
+  bool minimum_degree = false;  ///< the linear solver orders by minimum degree: faster for large sparse ones
 };
 
-/// A local minimum near `start`, with exact gradient, Jacobian and Hessian. Holds ipopt_mutex() all the time.
-IpoptOutcome minimise(const ReachNlp& nlp, const Eigen::VectorXd& start);
+struct IpoptOutcome {
+  bool converged = false;
+  bool infeasible = false;      ///< a point where constraints cannot be met any better, near it
+  std::string status;           ///< in words
+  Eigen::VectorXd variables;    ///< the last iterate, whether converged or not
+  Eigen::VectorXd multipliers;  ///< of the constraints there: > 0 where an upper bound holds
+  int iterations = 0;
+};
+
+/// A local minimum near `start`. Holds ipopt_mutex() all the time.
+IpoptOutcome minimise(const SmoothProgram& program, const Eigen::VectorXd& start,
+                      const IpoptSettings& settings = {});
 
 }  // namespace drapeplan

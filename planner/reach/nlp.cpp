@@ -167,7 +167,12 @@ Eigen::Vector3d ReachNlp::miss(const GripperJet& jet, int gripper) const {
   return jet.pad.value - problem_->targets[size_t(gripper)] / unit_;
 }
 
-double ReachNlp::objective(const VectorRef& v) const {
+SmoothProgram::Form ReachNlp::form() const {
+  return {variable_bounds(), constraint_bounds(), jacobian_pattern_, hessian_pattern_};
+}
+
+double ReachNlp::objective(const VectorRef& v, Eigen::VectorXd* gradient) const {
+  if (gradient != nullptr) *gradient = this->gradient(v);
   if (level_ >= 0) return v[level_];
   const std::vector<GripperJet> all = jets(v);
   double total = 0;
@@ -269,13 +274,7 @@ Eigen::VectorXd ReachNlp::hessian_values(const VectorRef& v, double sigma,
 }
 
 double ReachNlp::violation(const VectorRef& v) const {
-  const Eigen::VectorXd c = constraint_values(v);
-  const Bounds bounds = constraint_bounds();
-  if (!c.allFinite()) return kInfinity;
-  double largest = 0;
-  for (int k = 0; k < rows_; ++k)
-    largest = std::max({largest, bounds.lower[k] - c[k], c[k] - bounds.upper[k]});
-  return largest;
+  return drapeplan::violation(*this, v);
 }
 
 double ReachNlp::link_scale(const VectorRef& v) const {

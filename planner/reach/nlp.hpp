@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "planner/reach/program.hpp"
 #include "planner/reach/reach.hpp"
 
 namespace drapeplan {
@@ -36,16 +37,8 @@ enum class ReachGoal {
 /// max); then the squared length of the interlinks (free links). Rows of the constraints: one per interlink,
 /// two for the fixed joint, one per gripper for its tilt (limits below 90 degrees), one per gripper for its
 /// distance (goal max).
-class ReachNlp {
+class ReachNlp final : public SmoothProgram {
  public:
-  /// Places of nonzeros, (row, column). The Hessian's are those of its lower triangle.
-  using Pattern = std::vector<std::pair<int, int>>;
-  using VectorRef = Eigen::Ref<const Eigen::VectorXd>;
-
-  struct Bounds {
-    Eigen::VectorXd lower, upper;  ///< infinite where there is none
-  };
-
   /// `problem` must outlive the object and be sound (see check_reach).
   ReachNlp(const ReachProblem& problem, ReachGoal goal, bool free_links = false);
 
@@ -58,15 +51,15 @@ class ReachNlp {
   /// x-y places of the pads [m].
   [[nodiscard]] std::vector<Eigen::Vector2d> places_at(const VectorRef& v) const;
 
-  [[nodiscard]] double objective(const VectorRef& v) const;
+  [[nodiscard]] Form form() const override;
+  [[nodiscard]] double objective(const VectorRef& v, Eigen::VectorXd* gradient = nullptr) const override;
   [[nodiscard]] Eigen::VectorXd gradient(const VectorRef& v) const;
-  [[nodiscard]] Eigen::VectorXd constraint_values(const VectorRef& v) const;
+  [[nodiscard]] Eigen::VectorXd constraint_values(const VectorRef& v) const override;
   [[nodiscard]] const Pattern& jacobian_pattern() const { return jacobian_pattern_; }
-  [[nodiscard]] Eigen::VectorXd jacobian_values(const VectorRef& v) const;
+  [[nodiscard]] Eigen::VectorXd jacobian_values(const VectorRef& v) const override;
   [[nodiscard]] const Pattern& hessian_pattern() const { return hessian_pattern_; }
-  /// Of sigma * objective + multipliers . constraints.
   [[nodiscard]] Eigen::VectorXd hessian_values(const VectorRef& v, double sigma,
-                                               const VectorRef& multipliers) const;
+                                               const VectorRef& multipliers) const override;
   /// Largest violation of a constraint [spacing, or squares of it; the tilt's in its cosine].
   [[nodiscard]] double violation(const VectorRef& v) const;
   /// Length of the interlinks over the spacing: 1 unless they are free.

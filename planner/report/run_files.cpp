@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -60,6 +62,29 @@ Chart history_chart(const StagedResult& search) {
     const double objective = entry.valid ? entry.objective : kNaN;
     chart.series[found->second].points.emplace_back(entry.number, objective);
     chart.series[found->second + 1].points.emplace_back(entry.number, entry.best_so_far);
+  }
+  return chart;
+}
+
+/// Gap against boundary offset: what no schedule can go below, and what drapes have.
+Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows) {
+  Chart chart{.title = "Gap and boundary offset",
+              .x_label = "largest boundary offset [mm]",
+              .y_label = "largest gap [mm]",
+              .series = {},
+              .side_legend = true};
+  ChartSeries floor{.name = "floor of any schedule", .points = {}, .marks = true};
+  for (const FloorPoint& point : front.points) {
+    if (point.converged && std::isfinite(point.boundary_tolerance))
+      floor.points.emplace_back(1e3 * point.boundary_tolerance, 1e3 * point.gap);
+  }
+  std::sort(floor.points.begin(), floor.points.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); });
+  chart.series.push_back(floor);
+  for (const ReportRow& row : rows) {
+    if (!row.score.valid) continue;
+    chart.series.push_back({.name = row.name,
+                            .points = {{1e3 * row.score.max_boundary_offset, 1e3 * row.score.max_gap}},
+                            .dots = true});
   }
   return chart;
 }
@@ -186,7 +211,7 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
   report.title = problem.definition().name;
   report.description = problem.definition().description;
   report.verdict = search.message;
-  report.reach = explain_reach(problem.reach_problem(), problem.reach());
+  report.reach = explain_reach(problem.reach_problem(), problem.reach()) + " " + problem.ply_floor().meaning;
   report.rows = rows_of(problem, result);
   report.notes = notes_of(problem);
   const std::string drape = drape_picture(panels, problem.definition().mold->extent());
@@ -198,6 +223,11 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
                     {"Heights of the joints over time",
                      line_chart(height_chart(search.best.schedule, rig, "Optimised sequence"))},
                     {"Best objective against evaluations", line_chart(history_chart(search))}};
+  if (const FloorFront& front = problem.ply_floor().front; !front.points.empty()) {
+    report.figures.push_back({"Largest gap against largest boundary offset: drapes, and the floor below which no "
+                              "schedule comes while fibres stretch by 1 % at most",
+                              line_chart(floor_chart(front, report.rows))});
+  }
   report.facts = {{"evaluations", fmt::to_string(search.evaluations)},
                   {"failed evaluations", fmt::to_string(search.failed_evaluations)},
                   {"wall time", fmt::format("{:.0f} s", result.wall_seconds)},

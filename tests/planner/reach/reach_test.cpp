@@ -52,7 +52,7 @@ TEST(Reach, AnEmptyRigReachesEverything) {
 
 TEST(Reach, WithoutInterlinksEveryTargetIsReached) {
   ReachProblem problem = article_problem(0.02);
-  problem.rig.interlinks = false;
+  problem.rig.interlinks.reset();
   problem.rig.fixed.reset();
   const ReachResult result = solve_reach(problem);
   EXPECT_TRUE(result.converged);
