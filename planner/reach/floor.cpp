@@ -233,6 +233,18 @@ Solved solve_next(const FloorProblem& problem, double tolerance, const Solved& n
   return solver.solve(mapped, problem.mapped);
 }
 
+/// What a tighter tolerance allows a looser one allows, too: where its solution is better, the looser one's
+/// is a poor local minimum.
+void take_tighter(const FloorPoint& tighter, FloorPoint& looser) {
+  if (!tighter.converged || (looser.converged && looser.gap <= tighter.gap)) return;
+  const FloorPoint own = looser;
+  looser = tighter;
+  looser.boundary_tolerance = own.boundary_tolerance;
+  looser.iterations = own.iterations;
+  looser.wall_seconds = own.wall_seconds;
+  looser.status = "the net of a tighter boundary";
+}
+
 FloorPoint failed_point(double tolerance, const std::string& why) {
   FloorPoint point;
   point.boundary_tolerance = tolerance;
@@ -275,6 +287,7 @@ FloorFront solve_floor(const FloorProblem& problem, const FloorOptions& options)
     solved[k] = solve_next(problem, options.tolerances[order[k]], solved[k + 1], mapped);
   for (size_t k = middle + 1; k < order.size(); ++k)
     solved[k] = solve_next(problem, options.tolerances[order[k]], solved[k - 1], mapped);
+  for (size_t k = 1; k < order.size(); ++k) take_tighter(solved[k - 1].point, solved[k].point);
   for (size_t k = 0; k < order.size(); ++k) front.points[order[k]] = std::move(solved[k].point);
   front.wall_seconds = seconds_since(begin);
   return front;
