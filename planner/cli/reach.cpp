@@ -98,9 +98,8 @@ std::string floors_text(const Floors& floors) {
     text += fmt::format("\nsmallest possible largest gap [mm], edge within {:g} mm, with one change\n",
                         1e3 * floors.tolerance);
     for (const ChangedFloor& change : floors.changes) {
-      text += change.point.converged
-                  ? fmt::format("  {:8.2f}  {}\n", 1e3 * change.point.gap, change.words)
-                  : fmt::format("         -  {}: {}\n", change.words, change.point.status);
+      text += change.point.converged ? fmt::format("  {:8.2f}  {}\n", 1e3 * change.point.gap, change.words)
+                                     : fmt::format("         -  {}: {}\n", change.words, change.point.status);
     }
   }
   return text + "\n" + meaning_of(floors) + "\n";
@@ -153,7 +152,8 @@ int reach(const ReachOptions& options) {
 
 void add_reach(CLI::App& program, Action& action) {
   add_verb<ReachOptions>(
-      program, action, "reach", "how close grippers and ply can come to a perfect drape, whatever the schedule",
+      program, action, "reach",
+      "how close grippers and ply can come to a perfect drape, whatever the schedule",
       [](CLI::App& verb, ReachOptions& options) {
         verb.add_option("CASE", options.file, "case file")->required();
         verb.add_option("--cell", options.cell, "cells of the net of the ply (default 20 mm)");

@@ -58,8 +58,9 @@ std::vector<FloorChange> floor_changes(const Case& definition) {
         c.grippers->interlinks->lengths.clear();
       });
     }
-    add("play", "a play of +-" + millimetres(kPlay) + " in the interlinks",
-        [](Case& c) { c.grippers->interlinks->play = {kPlay, kPlay}; });
+    add("play", "a play of +-" + millimetres(kPlay) + " in the interlinks", [](Case& c) {
+      c.grippers->interlinks->play = {kPlay, kPlay};
+    });
   }
   if (rig.joint_offset > 0) {
     add("joint_offset", "joints at the ply instead of " + millimetres(rig.joint_offset) + " above it",
@@ -83,14 +84,15 @@ std::vector<FloorChange> floor_changes(const Case& definition) {
   for (const Eigen::Vector2d& way : {Eigen::Vector2d(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
     const Eigen::Vector2d shift = kStartShift * way;
     add(fmt::format("mapping_start_{:+.0f}_{:+.0f}_mm", 1e3 * shift.x(), 1e3 * shift.y()),
-        fmt::format("ply and mapping's start shifted by ({:.0f}, {:.0f}) mm", 1e3 * shift.x(), 1e3 * shift.y()),
+        fmt::format("ply and mapping's start shifted by ({:.0f}, {:.0f}) mm", 1e3 * shift.x(),
+                    1e3 * shift.y()),
         [&](Case& c) { c.mapping->start += shift, c.ply.position += shift; });
   }
   return changes;
 }
 
-std::vector<ChangedFloor> solve_changes(const std::vector<FloorChange>& changes, double tolerance, double cell,
-                                        double fibre_strain) {
+std::vector<ChangedFloor> solve_changes(const std::vector<FloorChange>& changes, double tolerance,
+                                        double cell, double fibre_strain) {
   std::vector<ChangedFloor> floors;
   for (const FloorChange& change : changes) {
     ChangedFloor floor{change.name, change.words, {}};

@@ -16,9 +16,9 @@ struct FloorChange {
   Case definition;    ///< the case with this change alone
 };
 
-/// Interlinks as mapped, with play, joints at the ply, small pads, one more column and row of grippers over the
-/// same extent, no fixed joint (which also bounds every other place and turn of the ply), other starts of the
-/// mapping. Those that would change nothing are left out.
+/// Interlinks as mapped, with play, joints at the ply, small pads, one more column and row of grippers over
+/// the same extent, no fixed joint (which also bounds every other place and turn of the ply), other starts of
+/// the mapping. Those that would change nothing are left out.
 /// @param definition  with mold, mapping and grippers.
 std::vector<FloorChange> floor_changes(const Case& definition);
 
@@ -30,8 +30,8 @@ struct ChangedFloor {
 
 /// Each costs a mapping and a solve of its own.
 /// @param cell  of the net [m]; @param fibre_strain  see FloorProblem.
-std::vector<ChangedFloor> solve_changes(const std::vector<FloorChange>& changes, double tolerance, double cell,
-                                        double fibre_strain);
+std::vector<ChangedFloor> solve_changes(const std::vector<FloorChange>& changes, double tolerance,
+                                        double cell, double fibre_strain);
 
 /// "With interlinks as long as mapped it would be 0.1 mm." for each, the best first.
 std::string explain_changes(const FloorPoint& floor, const std::vector<ChangedFloor>& changes);

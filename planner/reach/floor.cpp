@@ -24,10 +24,10 @@ constexpr double kMaxCpuSeconds = 60;  // of the whole process, all threads: a g
 constexpr double kFirstGap = 1e-3;     // [m]: of all nodes in a start; inside its bound, as Ipopt likes it
 /// [spacing]: largest shift of a pad, per axis, for a random start (as in reach.cpp).
 constexpr double kPerturbation = 0.15;
-constexpr int kRounds = 4;                // of linearising the boundary
-constexpr double kSameLimit = 5e-5;       // [m]: limits that say the same of a node to this are the same
-/// First barrier parameter, and how far starts are moved from their bounds, at most. Larger ones lift the whole
-/// net off the mold first, from where it finds its way back slowly, or to a poor local minimum.
+constexpr int kRounds = 4;           // of linearising the boundary
+constexpr double kSameLimit = 5e-5;  // [m]: limits that say the same of a node to this are the same
+/// First barrier parameter, and how far starts are moved from their bounds, at most. Larger ones lift the
+/// whole net off the mold first, from where it finds its way back slowly, or to a poor local minimum.
 constexpr double kBarrier = 1e-5;
 constexpr double kPush = 1e-3;
 
@@ -39,7 +39,8 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 std::string check_floor(const FloorProblem& problem) {
   const RigOptions& rig = problem.rig;
   const size_t nodes = problem.net.rest.size();
-  if (rig.count() < 1 || int(problem.held.size()) != rig.count()) return "no grippers, or not those of the rig";
+  if (rig.count() < 1 || int(problem.held.size()) != rig.count())
+    return "no grippers, or not those of the rig";
   if (!(rig.spacing > 0 && std::isfinite(rig.spacing))) return "the spacing is not positive";
   if (nodes == 0 || problem.mapped.size() != nodes || problem.flat.size() != nodes)
     return "the net and its mapping do not fit";
@@ -48,7 +49,8 @@ std::string check_floor(const FloorProblem& problem) {
     if (problem.held[size_t(k)].empty()) return "gripper " + rig.name(k) + " holds no node of the net";
   }
   for (const Eigen::Vector3d& place : problem.mapped) {
-    if (!problem.mold.normal(place.x(), place.y()).allFinite()) return "the mold is not defined below the mapped ply";
+    if (!problem.mold.normal(place.x(), place.y()).allFinite())
+      return "the mold is not defined below the mapped ply";
   }
   return "";
 }
@@ -141,7 +143,8 @@ FloorPoint point_of(const FloorProblem& problem, const FloorNlp& nlp, const Ipop
   point.pads = shape.pad;
   const std::vector<double> areas = nodal_areas(problem.net);
   double area = 0, squares = 0;
-  for (size_t n = 0; n < areas.size(); ++n) area += areas[n], squares += areas[n] * shape.gap[n] * shape.gap[n];
+  for (size_t n = 0; n < areas.size(); ++n)
+    area += areas[n], squares += areas[n] * shape.gap[n] * shape.gap[n];
   point.gap = point.converged ? nlp.largest_gap(v) : kNaN;
   if (point.converged) point.spans = taut_spans(problem, nlp.fibres(), point.nodes, outcome.multipliers);
   point.rms_gap = point.converged ? std::sqrt(squares / area) : kNaN;
@@ -199,8 +202,8 @@ bool better(const Solved& a, const Solved& b) {
   return a.point.converged ? a.point.gap < b.point.gap : a.point.violation < b.point.violation;
 }
 
-/// One tolerance from all starts; the best of them goes on. All have the same tangents at first, so their gaps
-/// compare.
+/// One tolerance from all starts; the best of them goes on. All have the same tangents at first, so their
+/// gaps compare.
 Solved solve_first(const FloorProblem& problem, double tolerance, const FloorOptions& options,
                    FloorFront& front) {
   const Solver solver(problem, tolerance);
@@ -230,6 +233,18 @@ Solved solve_next(const FloorProblem& problem, double tolerance, const Solved& n
   return solver.solve(mapped, problem.mapped);
 }
 
+/// What a tighter tolerance allows a looser one allows, too: where its solution is better, the looser one's
+/// is a poor local minimum.
+void take_tighter(const FloorPoint& tighter, FloorPoint& looser) {
+  if (!tighter.converged || (looser.converged && looser.gap <= tighter.gap)) return;
+  const FloorPoint own = looser;
+  looser = tighter;
+  looser.boundary_tolerance = own.boundary_tolerance;
+  looser.iterations = own.iterations;
+  looser.wall_seconds = own.wall_seconds;
+  looser.status = "the net of a tighter boundary";
+}
+
 FloorPoint failed_point(double tolerance, const std::string& why) {
   FloorPoint point;
   point.boundary_tolerance = tolerance;
@@ -244,7 +259,8 @@ double net_strain(const FloorProblem& problem, const std::vector<Eigen::Vector3d
   double largest = -1;
   for (const Fibre& fibre : fibres_of(problem)) {
     Eigen::Vector3d along(0, 0, 0);
-    for (size_t c = 0; c < size_t(fibre.count); ++c) along += fibre.coefficient[c] * nodes[size_t(fibre.corner[c])];
+    for (size_t c = 0; c < size_t(fibre.count); ++c)
+      along += fibre.coefficient[c] * nodes[size_t(fibre.corner[c])];
     largest = std::max(largest, along.norm() - 1);
   }
   return largest;
@@ -271,6 +287,7 @@ FloorFront solve_floor(const FloorProblem& problem, const FloorOptions& options)
     solved[k] = solve_next(problem, options.tolerances[order[k]], solved[k + 1], mapped);
   for (size_t k = middle + 1; k < order.size(); ++k)
     solved[k] = solve_next(problem, options.tolerances[order[k]], solved[k - 1], mapped);
+  for (size_t k = 1; k < order.size(); ++k) take_tighter(solved[k - 1].point, solved[k].point);
   for (size_t k = 0; k < order.size(); ++k) front.points[order[k]] = std::move(solved[k].point);
   front.wall_seconds = seconds_since(begin);
   return front;

@@ -67,7 +67,8 @@ std::string span_words(const RigOptions& rig, const TautSpan& span) {
 }  // namespace
 
 std::vector<TautSpan> taut_spans(const FloorProblem& problem, const std::vector<Fibre>& fibres,
-                                 const std::vector<Eigen::Vector3d>& nodes, const Eigen::VectorXd& multipliers) {
+                                 const std::vector<Eigen::Vector3d>& nodes,
+                                 const Eigen::VectorXd& multipliers) {
   const double stretch = 1 + problem.fibre_strain;
   std::map<SpanKey, std::map<long, Line>> spans;  // lines by their place across, in micrometres
   for (size_t k = 0; k < fibres.size(); ++k) {
@@ -105,8 +106,9 @@ std::vector<TautSpan> taut_spans(const FloorProblem& problem, const std::vector<
 }
 
 std::string front_table(const FloorFront& front) {
-  std::string text = "smallest possible largest gap of the ply, by how far its edge may be off\n"
-                     "  edge within [mm]   gap [mm]   r.m.s. gap [mm]   edge off by [mm]\n";
+  std::string text =
+      "smallest possible largest gap of the ply, by how far its edge may be off\n"
+      "  edge within [mm]   gap [mm]   r.m.s. gap [mm]   edge off by [mm]\n";
   for (const FloorPoint& point : front.points) {
     char line[128], tolerance[32];
     std::snprintf(tolerance, sizeof tolerance, "%g", 1e3 * point.boundary_tolerance);
@@ -134,10 +136,10 @@ std::string explain_floor(const FloorProblem& problem, const FloorFront& front, 
       point = &one;
   }
   if (point == nullptr) return "No boundary tolerance was asked for.";
-  const std::string where = std::isinf(point->boundary_tolerance)
-                                ? "Wherever its edge ends"
-                                : "With its edge within " + millimetres(point->boundary_tolerance) +
-                                      " of the prescribed boundary";
+  const std::string where =
+      std::isinf(point->boundary_tolerance)
+          ? "Wherever its edge ends"
+          : "With its edge within " + millimetres(point->boundary_tolerance) + " of the prescribed boundary";
   if (!point->converged) return where + ", no floor of the ply's gap was found: " + point->status + ".";
   if (point->gap <= kNegligible) return where + ", the ply can lie on the mold everywhere.";
   char strain[32];
@@ -151,7 +153,8 @@ std::string explain_floor(const FloorProblem& problem, const FloorFront& front, 
     std::snprintf(gain, sizeof gain, "%.1f", span.gain);
     text += told == 0 ? " What holds it up most: " : "; ";
     text += span_words(problem.rig, span);
-    if (span.shortage > kNegligible) text += " is " + millimetres(span.shortage) + " too short for the mold below";
+    if (span.shortage > kNegligible)
+      text += " is " + millimetres(span.shortage) + " too short for the mold below";
     text += std::string(told == 0 ? " (a millimetre more there would lower the floor by " : " (") + gain +
             (told == 0 ? " mm)" : ")");
     ++told;

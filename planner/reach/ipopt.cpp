@@ -9,8 +9,6 @@
 #include <cmath>
 #include <limits>
 
-#include "planner/reach/ipopt_lock.hpp"
-
 namespace drapeplan {
 namespace {
 
@@ -86,7 +84,8 @@ class Adapter final : public Ipopt::TNLP {
 
   bool eval_h(Index n, const Number* x, bool, Number sigma, Index m, const Number* multipliers, bool, Index,
               Index* rows, Index* columns, Number* values) override {
-    if (values != nullptr) return give(program_.hessian_values(view(x, n), sigma, view(multipliers, m)), values);
+    if (values != nullptr)
+      return give(program_.hessian_values(view(x, n), sigma, view(multipliers, m)), values);
     give_pattern(form_.hessian, rows, columns);
     return true;
   }
@@ -152,7 +151,8 @@ std::mutex& ipopt_mutex() {
   return mutex;
 }
 
-IpoptOutcome minimise(const SmoothProgram& program, const Eigen::VectorXd& start, const IpoptSettings& settings) {
+IpoptOutcome minimise(const SmoothProgram& program, const Eigen::VectorXd& start,
+                      const IpoptSettings& settings) {
   IpoptOutcome outcome;
   outcome.variables = start;
   const std::lock_guard<std::mutex> lock(ipopt_mutex());

@@ -52,7 +52,7 @@ struct ReachResult {
 
 /// Solves the reach problem with Ipopt and exact derivatives, from the targets and `random_starts` perturbed
 /// starts; the best of them counts. Never throws for a geometry that cannot be satisfied: `converged` is
-/// false then. Calls from several threads are served one after the other (see ipopt_lock.hpp).
+/// false then. Calls from several threads are served one after the other (see ipopt_mutex).
 ReachResult solve_reach(const ReachProblem& problem, int random_starts = 2, unsigned seed = 1);
 
 /// What the floor means, for a process engineer, in a few sentences.

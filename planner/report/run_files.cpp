@@ -78,7 +78,8 @@ Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows) {
     if (point.converged && std::isfinite(point.boundary_tolerance))
       floor.points.emplace_back(1e3 * point.boundary_tolerance, 1e3 * point.gap);
   }
-  std::sort(floor.points.begin(), floor.points.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); });
+  std::sort(floor.points.begin(), floor.points.end(),
+            [](const auto& a, const auto& b) { return a.x() < b.x(); });
   chart.series.push_back(floor);
   for (const ReportRow& row : rows) {
     if (!row.score.valid) continue;
@@ -224,9 +225,10 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
                      line_chart(height_chart(search.best.schedule, rig, "Optimised sequence"))},
                     {"Best objective against evaluations", line_chart(history_chart(search))}};
   if (const FloorFront& front = problem.ply_floor().front; !front.points.empty()) {
-    report.figures.push_back({"Largest gap against largest boundary offset: drapes, and the floor below which no "
-                              "schedule comes while fibres stretch by 1 % at most",
-                              line_chart(floor_chart(front, report.rows))});
+    report.figures.push_back(
+        {"Largest gap against largest boundary offset: drapes, and the floor below which no "
+         "schedule comes while fibres stretch by 1 % at most",
+         line_chart(floor_chart(front, report.rows))});
   }
   report.facts = {{"evaluations", fmt::to_string(search.evaluations)},
                   {"failed evaluations", fmt::to_string(search.failed_evaluations)},

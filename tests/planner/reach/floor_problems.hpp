@@ -42,7 +42,8 @@ inline FloorProblem trough_problem(double radius) {
   constexpr double kSpacing = 0.1, kHalfWidth = 0.02;
   RigOptions rig = grid(2, 1, kSpacing, 0);
   rig.fixed = {1, 1};
-  FloorProblem problem{rig, trough(radius), rectangle_mesh(kSpacing, 2 * kHalfWidth, 0.05, {0}, {0}), {}, {}, {}, {}};
+  FloorProblem problem{
+      rig, trough(radius), rectangle_mesh(kSpacing, 2 * kHalfWidth, 0.05, {0}, {0}), {}, {}, {}, {}};
   for (const Eigen::Vector2d& uv : problem.net.rest) {
     problem.mapped.push_back(problem.mold.point(trough_place(radius, uv.x()), uv.y()));
     problem.flat.push_back(uv);

@@ -132,7 +132,8 @@ TEST(Floor, AFlatMoldLeavesNoGap) {
 }
 
 // The bar holds the pads at the ends of a chord as long as the fibre between them; both halves of the fibre
-// stretch by e and hang s / 2 sqrt((1 + e)^2 - 1) below the chord, whose middle is s^2 / (8 R) above the mold.
+// stretch by e and hang s / 2 sqrt((1 + e)^2 - 1) below the chord, whose middle is s^2 / (8 R) above the
+// mold.
 TEST(Floor, ARigidInterlinkHoldsThePlyAtTheChordOfItsTrough) {
   constexpr double kRadius = 0.15, kSpacing = 0.1;
   const FloorProblem problem = trough_problem(kRadius);
