@@ -23,6 +23,7 @@ void add_sheet_scenes(std::vector<StressScene>& scenes);
 void add_mold_scenes(std::vector<StressScene>& scenes);
 void add_rig_scenes(std::vector<StressScene>& scenes);
 void add_press_scenes(std::vector<StressScene>& scenes);
+void add_tack_scenes(std::vector<StressScene>& scenes);
 void add_numeric_scenes(std::vector<StressScene>& scenes);
 
 RunRequest request_of(const StressSetup& setup);

@@ -22,7 +22,8 @@ double moved_by_press(const StressRun& run) {
 double rms_gap(const StressRun& run, const Snapshot& ply) {
   double sum = 0;
   for (const Eigen::Vector3d& x : ply.position) {
-    const double gap = run.setup.scene.mold->closest(x).signed_distance - 0.5 * run.setup.scene.fabric.thickness;
+    const double gap =
+        run.setup.scene.mold->closest(x).signed_distance - 0.5 * run.setup.scene.fabric.thickness;
     sum += std::pow(std::max(gap, 0.0), 2);
   }
   return std::sqrt(sum / double(ply.position.size()));
@@ -51,7 +52,8 @@ std::vector<StressCheck> pressed_down(const StressRun& run) {
                   1.02 * rms_gap(run, *run.result.unpressed) + 1e-5)};
 }
 
-StressScene press_scene(std::string name, double pressure, std::function<void(StressSetup&)> change = nullptr) {
+StressScene press_scene(std::string name, double pressure,
+                        std::function<void(StressSetup&)> change = nullptr) {
   StressScene scene = drape_scene("press", std::move(name), [=](StressSetup& s) {
     s.scene.press = Press{.pressure = pressure, .duration = 4};
     if (change) change(s);
@@ -65,14 +67,10 @@ void add_pressures(Scenes& scenes) {
   scenes.back().judge = [](const StressRun& run) {
     return std::vector{weight_carried(run), at_most("moved [m]", moved_by_press(run), 1e-4)};
   };
-  for (const double pressure : {10.0, 1e3, 3e4, 1e5, 3e5, 1e6}) {
+  for (const double pressure : {10.0, 1e3, 3e4, 1e5, 3e5, 1e6, 1e7}) {
     scenes.push_back(press_scene(number_text(pressure) + " Pa", pressure));
     scenes.back().fast = pressure == 1e6;
   }
-  scenes.push_back(press_scene("10 MPa", 1e7));
-  scenes.back().otherwise = Verdict::stopped;
-  scenes.push_back(press_scene("1 GPa", 1e9));
-  scenes.back().otherwise = Verdict::stopped;
   for (const auto& [name, pressure] : {std::pair{"a negative pressure", -1.0},
                                        {"a pressure that is no number", std::nan("")},
                                        {"infinite pressure", std::numeric_limits<double>::infinity()}}) {
@@ -82,8 +80,14 @@ void add_pressures(Scenes& scenes) {
   }
 }
 
+void into_the_air(StressSetup& setup) {
+  setup.scene.mold.reset();
+  setup.scene.friction.reset();
+}
+
 void add_ways(Scenes& scenes) {
-  scenes.push_back(press_scene("0.1 MPa within 1 ms", 1e5, [](StressSetup& s) { s.scene.press->ramp = 1e-3; }));
+  scenes.push_back(
+      press_scene("0.1 MPa within 1 ms", 1e5, [](StressSetup& s) { s.scene.press->ramp = 1e-3; }));
   scenes.push_back(press_scene("30 kPa while it is still being laid down", 3e4, [](StressSetup& s) {
     s.scene.press->delay = 0;
     for (auto& path : s.schedule->paths) path[2].time -= 1;
@@ -92,16 +96,15 @@ void add_ways(Scenes& scenes) {
     s.schedule->release.assign(4, s.schedule->duration() + s.scene.press->ramp);
   }));
   scenes.push_back(press_scene("30 kPa without friction", 3e4, [](StressSetup& s) { s.scene.friction = 0; }));
-  scenes.back().most_drift = 1e-3;
+  scenes.back().most_drift = 2e-3;  // nothing but mass damping ends its sliding
   // Nothing bears the middle but fibres: pads stay where actuators hold them.
-  scenes.push_back(press_scene("300 Pa in the air", 300, [](StressSetup& s) { s.scene.mold.reset(); }));
+  scenes.push_back(press_scene("300 Pa in the air", 300, into_the_air));
   scenes.back().judge = [](const StressRun& run) {
     const double weight = weight_of(run.setup.scene);
     return std::vector{near("forces that bear the ply [N]", support_over_weight(run) * weight,
                             weight + 300 * covered_area(run.setup.scene.mesh, run.result.final), 0.02)};
   };
-  scenes.push_back(press_scene("0.1 MPa in the air: more than actuators hold", 1e5,
-                               [](StressSetup& s) { s.scene.mold.reset(); }));
+  scenes.push_back(press_scene("0.1 MPa in the air: more than actuators hold", 1e5, into_the_air));
   scenes.back().otherwise = Verdict::stopped;
 }
 

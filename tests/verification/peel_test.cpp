@@ -8,9 +8,9 @@ namespace {
 
 constexpr double kLength = 0.24, kWidth = 0.012;  // [m]
 constexpr test::Sheet kStrip{3.2e9, 3e-4, 0.314};
-constexpr double kSpeed = 0.01;     // [m/s]
-constexpr double kPeeled = 0.14;    // way of the grip [m]
-constexpr Tack kTack{2e3, 2e-3};    // process zone (D reach / stress)^(1/4) = 9 mm: three elements
+constexpr double kSpeed = 0.01;   // [m/s]
+constexpr double kPeeled = 0.14;  // way of the grip [m]
+constexpr Tack kTack{2e3, 2e-3};  // process zone (D reach / stress)^(1/4) = 9 mm: three elements
 
 /// Mean force of the grip along its way over the second half of it, times root two: what the peel of a unit
 /// length takes [N].
@@ -50,8 +50,8 @@ double peel_force(int along) {
 TEST(Peel, TakesTheWorkOfSeparationPerAreaOnAnyFineMesh) {
   const double exact = kTack.stress * kTack.reach * kWidth;  // less the spring's part, 1e-4 of it
   for (const int along : {60, 120}) {
-    const double error =
-        test::figure("peel, " + std::to_string(along) + " elements, force along the way", peel_force(along), exact);
+    const double error = test::figure("peel, " + std::to_string(along) + " elements, force along the way",
+                                      peel_force(along), exact);
     EXPECT_LE(error, 0.05);
   }
 }

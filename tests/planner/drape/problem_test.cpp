@@ -50,7 +50,8 @@ TEST(DrapeProblem, SolvesTheReachProblemOnDemandAndAimsAtItOnlyIfTold) {
   EXPECT_NE(reachable.frame().target_z, mapped.frame().target_z);
 }
 
-const std::vector<std::string> kPressed{"press={\"pressure\": \"30 kPa\", \"duration\": \"0.4 s\", \"ramp\": \"0.2 s\"}"};
+const std::vector<std::string> kPressed{
+    "press={\"pressure\": \"30 kPa\", \"duration\": \"0.4 s\", \"ramp\": \"0.2 s\"}"};
 
 TEST(DrapeProblem, ScoresThePlyBeforeAndAfterPressing) {
   const DrapeProblem plain(quick_case()), pressed(quick_case(kPressed));
