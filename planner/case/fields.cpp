@@ -8,9 +8,8 @@
 namespace drapeplan {
 namespace {
 
-constexpr double kLargestTack = 1e8;  // [Pa]; beyond any glue
-constexpr double kLargestPressure =
-    1e7;  // [Pa]; ten times that of an autoclave: beyond it a unit was mistaken
+constexpr double kLargestTack = 1e8;      // [Pa]; beyond any glue
+constexpr double kLargestPressure = 1e7;  // [Pa]; ten times that of an autoclave
 
 void visit_ply(FieldVisitor& v, CaseFields& fields) {
   Ply& ply = fields.definition.ply;
@@ -162,11 +161,10 @@ void visit_press(FieldVisitor& v, PressOptions& p) {
            from(0, 1e5), false, "absent: once the schedule is over"});
   v.field({"duration", &p.load.duration, "From its begin to the end of the run, which ends under pressure",
            Dimension::time, positive(1e5)});
-  v.field(
-      {"ramp", &p.load.ramp,
-       "From its begin to the full pressure, with a continuous slope; by default no faster than the fastest "
-       "stroke of a search (optimise.shortest_stroke)",
-       Dimension::time, positive(1e5)});
+  v.field({"ramp", &p.load.ramp,
+           "From its begin to the full pressure, with a continuous slope; by default as long as "
+           "optimise.shortest_stroke",
+           Dimension::time, positive(1e5)});
   v.field({"pads", choice(p.pads, {"held", "released"}),
            "Grippers hold the ply; or let go of it once the pressure is full, at the latest"});
   v.field({"objective", choice(p.objective, {"before", "after"}),
@@ -310,8 +308,8 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
         v.field(
             {"tack", &c.tack,
              "Stress up to which the ply sticks where it has touched: it resists pull-off, and adds to what "
-             "friction holds. Prepreg at room temperature: some 10 to 100 kPa in probe tests (Budelmann, "
-             "Schmidt, Meiners, Polymer Composites 41, 2020)",
+             "friction holds. For prepreg at room temperature assume 10 to 100 kPa, the order of probe tests "
+             "(review: Budelmann, Schmidt, Meiners, Polymer Composites 41, 2020)",
              Dimension::stress, from(0, kLargestTack), false, "absent: no tack"});
       });
   MappingOptions mapping;
