@@ -54,16 +54,16 @@ struct RunRecord {
 /// Positions at t, velocities at t - dt_before / 2 (central differences with a changing step).
 struct State {
   std::int64_t step = 0;
-  double time = 0;              ///< [s], of the simulation
-  double dt = 0;                ///< from t to the next positions [s]
-  double dt_before = 0;         ///< from the last positions to t [s]
-  double stable_dt = 0;         ///< stable step when dt was last chosen [s]
-  VectorField position;         ///< nodes [m]
-  VectorField velocity;         ///< nodes, at t - dt_before / 2 [m/s]
-  VectorField director;         ///< nodes, unit
-  VectorField director_rate;    ///< nodes, at t - dt_before / 2, normal to the directors [1/s]
-  VectorField anchor;           ///< where a node sticks to the mold [m]; empty without friction
-  std::vector<double> stuck;    ///< 1: the node touched the mold at the last step; empty without friction
+  double time = 0;            ///< [s], of the simulation
+  double dt = 0;              ///< from t to the next positions [s]
+  double dt_before = 0;       ///< from the last positions to t [s]
+  double stable_dt = 0;       ///< stable step when dt was last chosen [s]
+  VectorField position;       ///< nodes [m]
+  VectorField velocity;       ///< nodes, at t - dt_before / 2 [m/s]
+  VectorField director;       ///< nodes, unit
+  VectorField director_rate;  ///< nodes, at t - dt_before / 2, normal to the directors [1/s]
+  VectorField anchor;         ///< where a node sticks to the mold [m]; empty without friction
+  std::vector<double> stuck;  ///< 1: the node touched, or was held, at the last step; empty without friction
   std::vector<double> history;  ///< what elements remember of their strains; see fem/shell/term.hpp
   /// Directions of edges along warp and weft when the step was last chosen, by their first nodes; empty
   /// without fibre inertia.

@@ -16,4 +16,8 @@ namespace drapeplan {
 std::unique_ptr<Term> make_scene_contact(const Scene& scene, const Shell& shell, const NodalMasses& masses,
                                          const StepBounds& bounds, double inertial_rate);
 
+/// Least rate of a node with fibre inertia that carries the contact springs which a press needs [1/s]. Added
+/// mass is not seen by pads: on springs of a higher rate they would take energy from it.
+double rate_for_press(const Scene& scene, const NodalMasses& masses, const StepBounds& bounds);
+
 }  // namespace drapeplan

@@ -106,6 +106,8 @@ void Model::add_rig() {
 }
 
 void Model::add_contact(NodalStiffness& stiffness) {
+  if (scene_.press && fibre_inertia_rate_ > 0)
+    fibre_inertia_rate_ = std::max(fibre_inertia_rate_, rate_for_press(scene_, masses_, bounds_));
   terms_.push_back(make_scene_contact(scene_, *shell_, masses_, bounds_, fibre_inertia_rate_));
   terms_.back()->add_stiffness(stiffness);
 }

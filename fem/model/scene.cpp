@@ -72,6 +72,14 @@ void check_mold(const Scene& scene) {
 
 void check_scene(const Scene& scene) {
   if (scene.friction && !scene.mold) throw WrongInput("friction needs a mold");
+  if (scene.tack) {
+    const Tack& tack = *scene.tack;
+    if (!scene.friction) throw WrongInput("tack needs friction");
+    if (!(tack.stress >= 0 && tack.reach > 0 && std::isfinite(tack.stress) && std::isfinite(tack.reach)))
+      throw WrongInput(
+          fmt::format("tack: needs a stress >= 0 ({:g} Pa) and a reach > 0 ({:g} m), both finite",
+                      tack.stress, tack.reach));
+  }
   if (scene.start == Start::on_mold && (!scene.mold || scene.rig))
     throw WrongInput("a ply that starts on the mold needs a mold, and no rig");
   if (scene.mold) check_mold(scene);

@@ -9,6 +9,7 @@
 #include "fem/law/fabric.hpp"
 #include "fem/mesh/mesh.hpp"
 #include "fem/rig/rig.hpp"
+#include "fem/terms/contact.hpp"
 #include "fem/terms/grips.hpp"
 #include "fem/terms/loads.hpp"
 #include "fem/terms/press.hpp"
@@ -29,6 +30,7 @@ struct Scene {
   std::optional<double> damping;   ///< mass-proportional rate alpha of the unscaled ply [1/s]
   std::optional<Mold> mold;
   std::optional<double> friction;  ///< needs a mold
+  std::optional<Tack> tack;        ///< needs friction
   std::optional<RigOptions> rig;
   std::optional<Loads> loads;
   std::optional<Press> press;         ///< after the schedule, or the given duration
@@ -41,9 +43,9 @@ struct Scene {
 /// All but the mold, which has no list of numbers of its own.
 inline auto fields_of(const Scene& of) {
   const auto& [mesh, fabric, options, position, angle, start_height, start, gravity, damping, mold, friction,
-               rig, loads, press, clamped, pinned, grips, rest] = of;
+               tack, rig, loads, press, clamped, pinned, grips, rest] = of;
   return std::tie(mesh, fabric, options, position, angle, start_height, start, gravity, damping, friction,
-                  rig, loads, press, clamped, pinned, grips, rest);
+                  tack, rig, loads, press, clamped, pinned, grips, rest);
 }
 
 /// Refuses parts that need others, and a mold that contact cannot follow: curved more sharply than the mesh,

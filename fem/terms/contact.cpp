@@ -18,6 +18,7 @@ constexpr double kNear = 0.1;
 /// Sliding this many times faster than it approaches, a node that touches anew slides, whatever the
 /// coefficient.
 constexpr double kGrazing = 1e3;
+constexpr double kHalfway = 0.5;  // of State::stuck, which is 0 or 1
 constexpr double kTiny = 1e-300;  // keeps 0 / 0 away: a node at rest
 
 Lanes zero_unless(const Lanes::mask_type& condition, Lanes value) {
@@ -43,28 +44,32 @@ struct Neighbourhood {
   double clearance = 0;  ///< how far all may move without touching [m]; 0 if one may touch, or is beside it
 };
 
-template <bool kFriction>
+template <bool kFriction, bool kTack = false>
 class ContactTerm final : public Term {
  public:
   ContactTerm(const Mold& mold, double friction, ContactSprings springs, double surface, int look_ahead,
-              ReleasedSprings released)
+              ReleasedSprings released, NodalTack tack = {})
       : mold_(mold),
         friction_(friction),
         springs_(std::move(springs)),
         released_(std::move(released.springs)),
         surface_(surface),
+        near_((1 + kNear) * surface),
+        held_near_(near_),
         look_ahead_(look_ahead),
-        count_(int(springs_.stiffness.size())) {
+        count_(int(springs_.stiffness.size())),
+        tack_(std::move(tack)) {
     springs_.stiffness.resize(padded(count_), 1.0);
     springs_.damping.resize(padded(count_), 0.0);
     pad_.assign(padded(count_), kNoPad);
     for (size_t g = 0; g < released.nodes.size(); ++g) {
       for (const int node : released.nodes[g]) pad_[size_t(node)] = int(g);
     }
+    if constexpr (kTack) hold();
   }
 
   [[nodiscard]] std::string_view name() const override {
-    return kFriction ? "contact with friction" : "contact";
+    return kTack ? "contact with friction and tack" : kFriction ? "contact with friction" : "contact";
   }
 
   [[nodiscard]] std::vector<Forces> entries() const override {
@@ -78,7 +83,7 @@ class ContactTerm final : public Term {
     for (size_t n = 0; n < size_t(count_); ++n) add_node(springs_, n, stiffness);
   }
 
-  /// Nodes that touch, or would in `look_ahead` steps at twice their speed.
+  /// Nodes that touch or are held, or would in `look_ahead` steps at twice their speed.
   void add_tangent(const State& state, NodalStiffness& stiffness) const override {
     double z[kChunk], zx[kChunk], zy[kChunk];
     for (int first = 0; first < count_; first += kChunk) {
@@ -87,7 +92,8 @@ class ContactTerm final : public Term {
       for (int k = 0; k < chunk && first + k < count_; ++k) {
         const auto n = size_t(first + k);
         const double speed = std::hypot(state.velocity.x[n], state.velocity.y[n], state.velocity.z[n]);
-        const double reach = (1 + kNear) * surface_ + 2 * look_ahead_ * state.dt * speed;
+        const bool held = kTack && state.stuck[n] > kHalfway;
+        const double reach = (held ? held_near_ : near_) + 2 * look_ahead_ * state.dt * speed;
         const double distance = (state.position.z[n] - z[k]) / std::sqrt(1 + zx[k] * zx[k] + zy[k] * zy[k]);
         if (distance < reach)  // false where the mold is not defined
           add_node(let_go(state, n) ? released_ : springs_, n, stiffness);
@@ -118,6 +124,17 @@ class ContactTerm final : public Term {
   }
 
  private:
+  /// Pads the nodes' forces; nodes as far off as the last bond breaks are near.
+  void hold() {
+    tack_.force.resize(padded(count_), 0.0);
+    double last = tack_.reach;
+    for (const ContactSprings* springs : {&springs_, &released_}) {
+      for (size_t n = 0; n < size_t(count_) && n < springs->stiffness.size(); ++n)
+        last = std::max(last, tack_.force[n] / springs->stiffness[n]);
+    }
+    held_near_ = (1 + kNear) * (surface_ + last);
+  }
+
   static void add_node(const ContactSprings& springs, size_t n, NodalStiffness& stiffness) {
     stiffness.translation[n] += springs.stiffness[n];
     stiffness.damping[n] += springs.damping[n];
@@ -170,7 +187,7 @@ class ContactTerm final : public Term {
       const Vec3<Lanes> x = state.position.lanes(first + k);
       const Lanes zx = load(&feet.zx[k]), zy = load(&feet.zy[k]), above = x.z - load(&feet.z[k]);
       const Lanes slope2 = zx * zx + zy * zy, stretch2 = Lanes(1.0) + slope2;
-      const Lanes reach((1 + kNear) * surface_);  // false where the mold is not defined
+      const Lanes reach(held_near_);  // false where the mold is not defined
       const auto near =
           (above < Lanes(0.0) || above * above < reach * reach * stretch2) && slope2 < Lanes(kSteepest2);
       any = any || near;
@@ -205,29 +222,37 @@ class ContactTerm final : public Term {
     const Lanes rise = one / stdx::sqrt(one + zx * zx + zy * zy);
     Vec3<Lanes> normal{-(zx * rise), -(zy * rise), rise};
     Lanes gap = dot(x - foot, normal) - Lanes(surface_);
-    const auto touching = gap < zero;  // false for NaN
+    Lanes stiffness, damping, held(zero);
+    auto touching = gap < zero;  // false for NaN
+    if constexpr (kTack) {
+      springs_at(state, at, stiffness, damping);
+      held = load(&tack_.force[at]);
+      const auto bonded = load(&state.stuck[at]) > Lanes(kHalfway);
+      touching = touching || (bonded && gap < stdx::max(Lanes(tack_.reach), held / stiffness));
+    }
     if (stdx::none_of(touching)) return release(state, entries, at);
     gap = zero_unless(touching, gap);
     for (Lanes* part : {&normal.x, &normal.y, &normal.z}) *part = zero_unless(touching, *part);
-    Lanes stiffness, damping;
-    springs_at(state, at, stiffness, damping);
+    if constexpr (!kTack) springs_at(state, at, stiffness, damping);
     const Vec3<Lanes> v = state.velocity.lanes(at);
     const Lanes approach = -dot(v, normal);
-    const Lanes push = stdx::max(damping * approach - stiffness * gap, zero);
+    const Lanes push = stdx::max(damping * approach - stiffness * gap, kTack ? -held : zero);
     const Lanes pressure = zero_unless(touching, push);
     entries[0].force.set_lanes(at, pressure * normal);
     if constexpr (kFriction) {
       const Vec3<Lanes> slide = v + approach * normal, anchor = state.anchor.lanes(at);
       Vec3<Lanes> slip = x - anchor;
       slip = slip - dot(slip, normal) * normal;
-      const auto fresh = load(&state.stuck[at]) < Lanes(0.5);
+      const auto fresh = load(&state.stuck[at]) < Lanes(kHalfway);
       const Lanes speed = stdx::sqrt(dot(slide, slide));
       const Lanes since = -gap / stdx::max(approach, speed * Lanes(1 / kGrazing) + Lanes(kTiny));
       stdx::where(fresh, slip.x) = since * slide.x;
       stdx::where(fresh, slip.y) = since * slide.y;
       stdx::where(fresh, slip.z) = since * slide.z;
       const Vec3<Lanes> pull = stiffness * slip + damping * slide;
-      const Lanes share = share_held(Lanes(friction_) * pressure, stdx::sqrt(dot(pull, pull)));
+      Lanes limit = Lanes(friction_) * pressure;
+      if constexpr (kTack) limit = Lanes(friction_) * stdx::max(pressure, zero) + held;
+      const Lanes share = share_held(limit, stdx::sqrt(dot(pull, pull)));
       const Lanes hold = zero_unless(touching, -share);
       entries[1].force.set_lanes(at, hold * pull);
       state.anchor.set_lanes(at, x - share * slip);
@@ -241,8 +266,10 @@ class ContactTerm final : public Term {
   ContactSprings springs_, released_;
   std::vector<int> pad_;  ///< that holds a node, or kNoPad
   double surface_;
+  double near_, held_near_;  ///< from the mid-surface: a node may touch; one may be held [m]
   int look_ahead_;
   int count_;
+  NodalTack tack_;  ///< padded; empty without tack
 };
 
 class GravityTerm final : public Term {
@@ -262,7 +289,11 @@ class GravityTerm final : public Term {
 }  // namespace
 
 std::unique_ptr<Term> make_contact(const Mold& mold, std::optional<double> friction, ContactSprings springs,
-                                   double surface, int look_ahead, ReleasedSprings released) {
+                                   double surface, int look_ahead, ReleasedSprings released,
+                                   std::optional<NodalTack> tack) {
+  if (friction && tack)
+    return std::make_unique<ContactTerm<true, true>>(mold, *friction, std::move(springs), surface, look_ahead,
+                                                     std::move(released), std::move(*tack));
   if (friction)
     return std::make_unique<ContactTerm<true>>(mold, *friction, std::move(springs), surface, look_ahead,
                                                std::move(released));

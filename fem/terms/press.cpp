@@ -29,15 +29,14 @@ class PressTerm final : public Term {
   }
 
   void add_stiffness(NodalStiffness& stiffness) const override {
-    const auto place_of = [this](int n) {
-      return Vector3d(rest_[size_t(n)].x(), rest_[size_t(n)].y(), 0);
-    };
+    const auto place_of = [this](int n) { return Vector3d(rest_[size_t(n)].x(), rest_[size_t(n)].y(), 0); };
     add_bounds(full_, place_of, stiffness);
   }
 
   void add_tangent(const State& state, NodalStiffness& stiffness) const override {
     if (state.pressure == 0) return;
-    add_bounds(state.pressure, [&state](int n) { return place(state, n); }, stiffness);
+    add_bounds(
+        state.pressure, [&state](int n) { return place(state, n); }, stiffness);
   }
 
   /// Without pressure the forces are zero as entries() made them, and nobody looks at them.

@@ -18,7 +18,7 @@ struct Press {
   /// From the end of the last stroke, or of a run without schedule; absent: from the schedule's end [s].
   std::optional<double> delay = {};
   double duration = 2;  ///< the ramp included: by default it holds as long as it rises [s]
-  double ramp = 1;      ///< to the full pressure [s]: by default no faster than the fastest stroke of a search
+  double ramp = 1;  ///< to the full pressure [s]: by default no faster than the fastest stroke of a search
 };
 
 inline auto fields_of(const Press& of) {
@@ -44,8 +44,8 @@ PressTimes press_times(const Press& press, const Schedule* schedule, double end)
 double pressure_at(const PressTimes& times, double full, double t);
 
 /// Presses the ply with `State::pressure` from its upper face, against its normal: towards the mold that it
-/// lies on. It follows the ply: forces on nodes are those of the bilinear elements as they are now, so that their
-/// work is the pressure times the volume that the ply sweeps, exactly.
+/// lies on. It follows the ply: forces on nodes are those of the bilinear elements as they are now, so that
+/// their work is the pressure times the volume that the ply sweeps, exactly.
 /// @param press  for the bound of its stiffness.
 std::unique_ptr<Term> make_press(const Press& press, const Mesh& mesh);
 

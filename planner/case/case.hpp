@@ -128,6 +128,7 @@ struct Case {
   double start_height = 0;     ///< height of the level ply without grippers [m]
   std::optional<Mold> mold;
   std::optional<double> friction;  ///< Coulomb coefficient between ply and mold
+  std::optional<double> tack;      ///< of the ply on the mold, with friction [Pa]
   std::optional<MappingOptions> mapping;
   std::optional<RigOptions> grippers;
   InterlinkLength interlink_length;  ///< a mapped one becomes `grippers.interlinks.lengths` with the mapping

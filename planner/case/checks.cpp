@@ -186,7 +186,8 @@ void check_press(const CaseFields& fields, FieldReader& reader) {
                              format_quantity(press->load.duration, Dimension::time));
   }
   if (fields.definition.grippers) return;
-  if (press->pads == PressOptions::Pads::released) reader.fail("/press/pads", "there are no grippers to let go");
+  if (press->pads == PressOptions::Pads::released)
+    reader.fail("/press/pads", "there are no grippers to let go");
   if (press->objective == PressOptions::Objective::before)
     reader.fail("/press/objective", "without grippers nothing is scored");
 }

@@ -8,7 +8,8 @@
 namespace drapeplan {
 namespace {
 
-constexpr double kLargestPressure = 1e7;  // [Pa]; ten times that of an autoclave: beyond it a unit was mistaken
+constexpr double kLargestTack = 1e8;      // [Pa]; beyond any glue
+constexpr double kLargestPressure = 1e7;  // [Pa]; ten times that of an autoclave
 
 void visit_ply(FieldVisitor& v, CaseFields& fields) {
   Ply& ply = fields.definition.ply;
@@ -152,15 +153,17 @@ void visit_schedule(FieldVisitor& v, ScheduleOptions& s) {
 }
 
 void visit_press(FieldVisitor& v, PressOptions& p) {
-  v.field({"pressure", &p.load.pressure, "On the ply, normal to it, towards the mold; a vacuum bag: up to 0.1 MPa",
-           Dimension::stress, from(0, kLargestPressure), true});
-  v.field({"delay", &p.load.delay, "From the end of the last stroke, or of a run without grippers, to its begin",
-           Dimension::time, from(0, 1e5), false, "absent: once the schedule is over"});
+  v.field({"pressure", &p.load.pressure,
+           "On the ply, normal to it, towards the mold; a vacuum bag: up to 0.1 MPa", Dimension::stress,
+           from(0, kLargestPressure), true});
+  v.field({"delay", &p.load.delay,
+           "From the end of the last stroke, or of a run without grippers, to its begin", Dimension::time,
+           from(0, 1e5), false, "absent: once the schedule is over"});
   v.field({"duration", &p.load.duration, "From its begin to the end of the run, which ends under pressure",
            Dimension::time, positive(1e5)});
   v.field({"ramp", &p.load.ramp,
-           "From its begin to the full pressure, with a continuous slope; by default no faster than the fastest "
-           "stroke of a search (optimise.shortest_stroke)",
+           "From its begin to the full pressure, with a continuous slope; by default as long as "
+           "optimise.shortest_stroke",
            Dimension::time, positive(1e5)});
   v.field({"pads", choice(p.pads, {"held", "released"}),
            "Grippers hold the ply; or let go of it once the pressure is full, at the latest"});
@@ -319,8 +322,14 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
   Case& c = fields.definition;
   optional_section(
       v, {"friction", "Coulomb friction between ply and mold", false, {"mold", "material"}}, c.friction, 0.0,
-      [&v](double& coefficient) {
+      [&v, &c](double& coefficient) {
         v.field({"coefficient", &coefficient, "Coulomb coefficient", Dimension::none, from(0, 100), true});
+        v.field(
+            {"tack", &c.tack,
+             "Stress up to which the ply sticks where it has touched: it resists pull-off, and adds to what "
+             "friction holds. For prepreg at room temperature assume 10 to 100 kPa, the order of probe tests "
+             "(review: Budelmann, Schmidt, Meiners, Polymer Composites 41, 2020)",
+             Dimension::stress, from(0, kLargestTack), false, "absent: no tack"});
       });
   MappingOptions mapping;
   mapping.start = c.ply.position;

@@ -116,6 +116,7 @@ Scene scene_of(const Case& definition, const FemOptions& options) {
   scene.rest = definition.rest;
   scene.mold = definition.mold;
   scene.friction = definition.friction;
+  if (definition.tack) scene.tack = Tack{.stress = *definition.tack};
   if (definition.press) scene.press = definition.press->load;
   scene.rig = definition.grippers;
   if (waits_for_mapping(definition))

@@ -43,8 +43,8 @@ struct Drape {
   RunResult run;
   Score score;                      ///< the one that the objective takes
   std::optional<OtherScore> other;  ///< where the ply was pressed
-  std::vector<double> gap;       ///< per node [m]
-  std::vector<Snapshot> frames;  ///< equally spaced in time, as many as were asked for
+  std::vector<double> gap;          ///< per node [m]
+  std::vector<Snapshot> frames;     ///< equally spaced in time, as many as were asked for
 };
 
 /// A part of a run: from a saved state, and up to a pause [s, schedule's clock]; see RunRequest.

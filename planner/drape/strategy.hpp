@@ -66,8 +66,8 @@ WaveParameters baseline_wave(const SequenceFrame& frame);
 /// `overtravel` below the target, rest until `settle` after the last stroke. Knot times increase strictly.
 /// Times are rounded to 0.1 ms and heights to 1 um, so that equal strategies from different parametrisations
 /// are equal schedules. A preshape or stroke that would need more than `rig.max_velocity` is stretched to it
-/// (see `stretched`); the starts stay. Suction ends `rig.release_time` after the last stroke, or when a press has
-/// taken over (see let_go_pressed).
+/// (see `stretched`); the starts stay. Suction ends `rig.release_time` after the last stroke, or when a press
+/// has taken over (see let_go_pressed).
 Schedule to_schedule(const SequenceFrame& frame, const Strokes& strokes);
 /// Where pads are released in the press, ends the suction of all grippers that still hold the ply when the
 /// pressure is full.

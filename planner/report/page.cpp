@@ -61,7 +61,9 @@ std::optional<std::string> best_text(const std::vector<ReportRow>& rows, const S
 }
 
 std::string score_row(const ReportRow& row, const BestTexts& best) {
-  std::string text = row.reference ? "<tr class=\"reference\">" : row.beside ? "<tr class=\"beside\">" : "<tr>";
+  std::string text = row.reference ? "<tr class=\"reference\">"
+                     : row.beside  ? "<tr class=\"beside\">"
+                                   : "<tr>";
   text += fmt::format("<td>{}</td>", escape_markup(row.name));
   if (!row.score.valid && !row.reference) {
     return text + fmt::format("<td class=\"failed\" colspan=\"{}\">failed: {}</td></tr>\n",

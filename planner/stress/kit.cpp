@@ -42,6 +42,17 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
+/// R.m.s. gap to the mold [m].
+double rms_gap(const StressRun& run, const Snapshot& ply) {
+  double sum = 0;
+  for (const Eigen::Vector3d& x : ply.position) {
+    const double gap =
+        run.setup.scene.mold->closest(x).signed_distance - 0.5 * run.setup.scene.fabric.thickness;
+    sum += std::pow(std::max(gap, 0.0), 2);
+  }
+  return std::sqrt(sum / double(ply.position.size()));
+}
+
 }  // namespace
 
 RunRequest request_of(const StressSetup& setup) {
@@ -230,6 +241,26 @@ StressCheck weight_carried(const StressRun& run, double share) {
   for (const double force : run.result.final.actuator_force) actuators += std::abs(force);
   return at_most("weight not carried [N]", std::abs(support_over_weight(run) - 1) * weight,
                  share * weight + kOfActuators * actuators);
+}
+
+double covered_area(const Mesh& mesh, const Snapshot& ply) {
+  double sum = 0;
+  for (size_t k = 0; k < mesh.outline.size(); ++k) {
+    const Eigen::Vector3d &a = ply.position[size_t(mesh.outline[k])],
+                          &b = ply.position[size_t(mesh.outline[(k + 1) % mesh.outline.size()])];
+    sum += 0.5 * (a.x() * b.y() - b.x() * a.y());
+  }
+  return sum;
+}
+
+std::vector<StressCheck> pressed_down(const StressRun& run) {
+  if (!run.result.unpressed) return {at_most("no ply before pressing", std::nan(""), 0)};
+  const double weight = weight_of(run.setup.scene);
+  const double load =
+      weight + run.setup.scene.press->pressure * covered_area(run.setup.scene.mesh, run.result.final);
+  return {near("forces that bear the ply [N]", support_over_weight(run) * weight, load, 0.02),
+          at_most("r.m.s. gap [m]", rms_gap(run, run.result.final),
+                  1.02 * rms_gap(run, *run.result.unpressed) + 1e-5)};
 }
 
 StressScene drape_scene(std::string group, std::string name, std::function<void(StressSetup&)> change) {

@@ -20,6 +20,7 @@ void add_sheet_scenes(std::vector<StressScene>& scenes);
 void add_mold_scenes(std::vector<StressScene>& scenes);
 void add_rig_scenes(std::vector<StressScene>& scenes);
 void add_press_scenes(std::vector<StressScene>& scenes);
+void add_tack_scenes(std::vector<StressScene>& scenes);
 void add_numeric_scenes(std::vector<StressScene>& scenes);
 
 RunRequest request_of(const StressSetup& setup);
@@ -63,7 +64,12 @@ double support_over_weight(const StressRun& run);
 /// At rest contact and actuators bear the ply: what is missing is at most a share of its weight, and of the
 /// forces with which actuators strain against each other.
 StressCheck weight_carried(const StressRun& run, double share = 0.02);
-/// A scene of corner_drape() with a change, judged by it.
+/// Area within the ply's edge as seen from above [m^2]: what a pressure pushes down on, however the ply lies
+/// within its edge.
+double covered_area(const Mesh& mesh, const Snapshot& ply);
+/// Of a pressed ply: at rest mold and actuators bear the ply and the press, and no gap has grown.
+std::vector<StressCheck> pressed_down(const StressRun& run);
+/// A scene of corner_drape() with a change, judged by weight_carried().
 StressScene drape_scene(std::string group, std::string name, std::function<void(StressSetup&)> change);
 /// Of the ply's weight [N].
 double weight_of(const Scene& scene);

@@ -11,6 +11,7 @@ std::vector<StressScene> stress_scenes() {
   add_mold_scenes(scenes);
   add_rig_scenes(scenes);
   add_press_scenes(scenes);
+  add_tack_scenes(scenes);
   add_numeric_scenes(scenes);
   // Scenes of a group stand together, in the order in which groups first appear.
   std::vector<std::string> groups;

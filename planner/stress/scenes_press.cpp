@@ -20,40 +20,8 @@ double moved_by_press(const StressRun& run) {
   return std::sqrt(sum / double(a.size()));
 }
 
-/// R.m.s. gap to the mold [m].
-double rms_gap(const StressRun& run, const Snapshot& ply) {
-  double sum = 0;
-  for (const Eigen::Vector3d& x : ply.position) {
-    const double gap = run.setup.scene.mold->closest(x).signed_distance - 0.5 * run.setup.scene.fabric.thickness;
-    sum += std::pow(std::max(gap, 0.0), 2);
-  }
-  return std::sqrt(sum / double(ply.position.size()));
-}
-
-/// Area within the ply's edge as seen from above [m^2]: what a pressure pushes down on, however the ply lies
-/// within its edge.
-double covered_area(const Mesh& mesh, const Snapshot& ply) {
-  double sum = 0;
-  for (size_t k = 0; k < mesh.outline.size(); ++k) {
-    const Eigen::Vector3d &a = ply.position[size_t(mesh.outline[k])],
-                          &b = ply.position[size_t(mesh.outline[(k + 1) % mesh.outline.size()])];
-    sum += 0.5 * (a.x() * b.y() - b.x() * a.y());
-  }
-  return sum;
-}
-
-/// At rest the mold and the actuators bear the ply and the press, and no gap has grown.
-std::vector<StressCheck> pressed_down(const StressRun& run) {
-  if (!run.result.unpressed) return {at_most("no ply before pressing", std::nan(""), 0)};
-  const double weight = weight_of(run.setup.scene);
-  const double load =
-      weight + run.setup.scene.press->pressure * covered_area(run.setup.scene.mesh, run.result.final);
-  return {near("forces that bear the ply [N]", support_over_weight(run) * weight, load, 0.02),
-          at_most("r.m.s. gap [m]", rms_gap(run, run.result.final),
-                  1.02 * rms_gap(run, *run.result.unpressed) + 1e-5)};
-}
-
-StressScene press_scene(std::string name, double pressure, std::function<void(StressSetup&)> change = nullptr) {
+StressScene press_scene(std::string name, double pressure,
+                        std::function<void(StressSetup&)> change = nullptr) {
   StressScene scene = drape_scene("press", std::move(name), [=](StressSetup& s) {
     s.scene.press = Press{.pressure = pressure, .duration = 4};
     if (change) change(s);
@@ -67,14 +35,10 @@ void add_pressures(Scenes& scenes) {
   scenes.back().judge = [](const StressRun& run) {
     return std::vector{weight_carried(run), at_most("moved [m]", moved_by_press(run), 1e-4)};
   };
-  for (const double pressure : {10.0, 1e3, 3e4, 1e5, 3e5, 1e6}) {
-    scenes.push_back(press_scene(fmt::format("{:.3g}", pressure) + " Pa", pressure));
+  for (const double pressure : {10.0, 1e3, 3e4, 1e5, 3e5, 1e6, 1e7}) {
+    scenes.push_back(press_scene(fmt::format("{:.3g} Pa", pressure), pressure));
     scenes.back().fast = pressure == 1e6;
   }
-  scenes.push_back(press_scene("10 MPa", 1e7));
-  scenes.back().otherwise = Verdict::stopped;
-  scenes.push_back(press_scene("1 GPa", 1e9));
-  scenes.back().otherwise = Verdict::stopped;
   for (const auto& [name, pressure] : {std::pair{"a negative pressure", -1.0},
                                        {"a pressure that is no number", std::nan("")},
                                        {"infinite pressure", std::numeric_limits<double>::infinity()}}) {
@@ -84,8 +48,14 @@ void add_pressures(Scenes& scenes) {
   }
 }
 
+void into_the_air(StressSetup& setup) {
+  setup.scene.mold.reset();
+  setup.scene.friction.reset();
+}
+
 void add_ways(Scenes& scenes) {
-  scenes.push_back(press_scene("0.1 MPa within 1 ms", 1e5, [](StressSetup& s) { s.scene.press->ramp = 1e-3; }));
+  scenes.push_back(
+      press_scene("0.1 MPa within 1 ms", 1e5, [](StressSetup& s) { s.scene.press->ramp = 1e-3; }));
   scenes.push_back(press_scene("30 kPa while it is still being laid down", 3e4, [](StressSetup& s) {
     s.scene.press->delay = 0;
     for (auto& path : s.schedule->paths) path[2].time -= 1;
@@ -94,17 +64,23 @@ void add_ways(Scenes& scenes) {
     s.schedule->release.assign(4, s.schedule->duration() + s.scene.press->ramp);
   }));
   scenes.push_back(press_scene("30 kPa without friction", 3e4, [](StressSetup& s) { s.scene.friction = 0; }));
-  scenes.back().most_drift = 1e-3;
-  // Nothing bears the middle but fibres: pads stay where actuators hold them.
-  scenes.push_back(press_scene("300 Pa in the air", 300, [](StressSetup& s) { s.scene.mold.reset(); }));
+  scenes.back().most_drift = 2e-3;  // nothing but mass damping ends its sliding
+  // Actuators bear it all; nothing keeps it from sailing away sideways.
+  scenes.push_back(press_scene("300 Pa in the air", 300, into_the_air));
+  scenes.back().rests = false;
   scenes.back().judge = [](const StressRun& run) {
     const double weight = weight_of(run.setup.scene);
     return std::vector{near("forces that bear the ply [N]", support_over_weight(run) * weight,
                             weight + 300 * covered_area(run.setup.scene.mesh, run.result.final), 0.02)};
   };
-  scenes.push_back(press_scene("0.1 MPa in the air: more than actuators hold", 1e5,
-                               [](StressSetup& s) { s.scene.mold.reset(); }));
-  scenes.back().otherwise = Verdict::stopped;
+  scenes.push_back(
+      press_scene("0.1 MPa in the air: falls against all that actuators hold", 1e5, into_the_air));
+  scenes.back().rests = false;
+  scenes.back().judge = [](const StressRun& run) {
+    return std::vector{near("forces that bear the ply [N]",
+                            support_over_weight(run) * weight_of(run.setup.scene),
+                            4 * run.setup.scene.rig->actuator_force_limit, 1e-9)};
+  };
 }
 
 }  // namespace

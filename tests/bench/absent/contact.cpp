@@ -6,7 +6,8 @@
 namespace drapeplan {
 
 std::unique_ptr<Term> make_contact(const Mold& /*mold*/, std::optional<double> /*friction*/,
-                                   ContactSprings /*springs*/, double /*surface*/, int /*look_ahead*/) {
+                                   ContactSprings /*springs*/, double /*surface*/, int /*look_ahead*/,
+                                   ReleasedSprings /*released*/, std::optional<NodalTack> /*tack*/) {
   absent("contact");
 }
 

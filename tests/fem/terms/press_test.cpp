@@ -29,7 +29,8 @@ Scene sheet() {
   return scene;
 }
 
-/// Volume between the ply and the plane z = 0 [m^3]: two Gauss points each way are exact for bilinear elements.
+/// Volume between the ply and the plane z = 0 [m^3]: two Gauss points each way are exact for bilinear
+/// elements.
 double volume_below(const Mesh& mesh, const State& state) {
   const double g = 1 / std::sqrt(3.0);
   double sum = 0;
@@ -116,8 +117,9 @@ TEST(Press, RisesSmoothlyFromItsBeginAndStays) {
 
 TEST(Press, IsRefusedWhereItMakesNoSense) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (const Press& wrong : {Press{.pressure = -1}, Press{.pressure = kNaN}, Press{.pressure = 1, .delay = -1},
-                             Press{.pressure = 1, .duration = 1, .ramp = 2}, Press{.pressure = 1, .ramp = 0}}) {
+  for (const Press& wrong :
+       {Press{.pressure = -1}, Press{.pressure = kNaN}, Press{.pressure = 1, .delay = -1},
+        Press{.pressure = 1, .duration = 1, .ramp = 2}, Press{.pressure = 1, .ramp = 0}}) {
     Scene scene = sheet();
     scene.press = wrong;
     EXPECT_THROW(Model{scene}, WrongInput);
