@@ -135,8 +135,8 @@ struct Case {
   Eigen::Vector2d interlink_closing{0, 1};  ///< from when to when they change, shares of the preshape
   std::string grippers_source;              ///< where their figures come from, in words
   std::optional<PressOptions> press;
-  std::optional<double> gravity;            ///< [m/s^2]
-  std::optional<double> damping;            ///< mass-proportional rate alpha of the unscaled ply [1/s]
+  std::optional<double> gravity;  ///< [m/s^2]
+  std::optional<double> damping;  ///< mass-proportional rate alpha of the unscaled ply [1/s]
   std::optional<RestCriterion> rest;
   std::vector<Edge> clamped;
   std::vector<GripOptions> grips;

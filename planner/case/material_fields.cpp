@@ -1,4 +1,4 @@
-#include "planner/case/material_fields.hpp"
+#include "planner/case/section_fields.hpp"
 
 #include "planner/input/kit.hpp"
 

@@ -1,5 +1,7 @@
 // Plies that stick: tack from nothing to more than any glue, on a drape that is let go, and on one that is
 // held.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 

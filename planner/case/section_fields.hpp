@@ -10,4 +10,7 @@ void visit_material(FieldVisitor& visitor, MaterialFields& material);
 void visit_mold(FieldVisitor& visitor, MoldFields& mold);
 void visit_damping(FieldVisitor& visitor, DampingFields& damping);
 
+/// The gripper grid; what `c` says of interlinks beside the rig.
+void visit_grippers(FieldVisitor& v, RigOptions& g, Case& c);
+
 }  // namespace drapeplan
