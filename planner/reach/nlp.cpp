@@ -125,6 +125,13 @@ ReachNlp::Bounds ReachNlp::variable_bounds() const {
 
 ReachNlp::Bounds ReachNlp::constraint_bounds() const {
   Bounds bounds{Eigen::VectorXd::Zero(rows_), Eigen::VectorXd::Zero(rows_)};
+  for (size_t k = 0; k < links_.size() && !free_links_; ++k) {
+    const InterlinkOptions& link = *problem_->rig.interlinks;
+    const double length = link_length(k), most = length + link.play[1] / unit_;
+    const double least = std::max(0.0, length - link.play[0] / unit_);
+    bounds.lower[int(k)] = link.stiffness ? -kInfinity : 0.5 * (least * least - length * length);
+    bounds.upper[int(k)] = link.stiffness ? kInfinity : 0.5 * (most * most - length * length);
+  }
   if (fixed_ >= 0) {
     bounds.lower.segment<2>(fixed_row_) = problem_->fixed_place / unit_;
     bounds.upper.segment<2>(fixed_row_) = problem_->fixed_place / unit_;
@@ -198,9 +205,9 @@ Eigen::VectorXd ReachNlp::gradient(const VectorRef& v) const {
 Eigen::VectorXd ReachNlp::constraint_values(const VectorRef& v) const {
   const std::vector<GripperJet> all = jets(v);
   Eigen::VectorXd c(rows_);
-  const double squared_length = free_links_ ? v[length_] : 1;
   for (size_t k = 0; k < links_.size(); ++k) {
     const auto [i, j] = links_[k];
+    const double squared_length = free_links_ ? v[length_] : std::pow(link_length(k), 2);
     c[int(k)] =
         0.5 * ((all[size_t(j)].joint.value - all[size_t(i)].joint.value).squaredNorm() - squared_length);
   }
@@ -275,6 +282,10 @@ Eigen::VectorXd ReachNlp::hessian_values(const VectorRef& v, double sigma,
 
 double ReachNlp::violation(const VectorRef& v) const {
   return drapeplan::violation(*this, v);
+}
+
+double ReachNlp::link_length(size_t link) const {
+  return interlink_length(problem_->rig, link) / unit_;
 }
 
 double ReachNlp::link_scale(const VectorRef& v) const {

@@ -66,6 +66,7 @@ class ReachNlp final : public SmoothProgram {
   [[nodiscard]] double link_scale(const VectorRef& v) const;
 
  private:
+  [[nodiscard]] double link_length(size_t link) const;  ///< once closed [unit]
   [[nodiscard]] std::vector<GripperJet> jets(const VectorRef& v) const;
   [[nodiscard]] Eigen::Vector3d miss(const GripperJet& jet, int gripper) const;
   void build_patterns();

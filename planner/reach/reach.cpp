@@ -109,8 +109,12 @@ Best best_of(const ReachProblem& problem, const ReachNlp& nlp, const std::vector
 
 double largest_link_error(const ReachProblem& problem, const std::vector<Eigen::Vector3d>& joints) {
   double error = 0;
-  for (const auto& [i, j] : interlinks(problem.rig)) {
-    error = std::max(error, std::abs((joints[size_t(j)] - joints[size_t(i)]).norm() - problem.rig.spacing));
+  const auto pairs = interlinks(problem.rig);
+  for (size_t k = 0; k < pairs.size() && !problem.rig.interlinks->stiffness; ++k) {
+    const double over =
+        (joints[size_t(pairs[k][1])] - joints[size_t(pairs[k][0])]).norm() - interlink_length(problem.rig, k);
+    error =
+        std::max({error, over - problem.rig.interlinks->play[1], -over - problem.rig.interlinks->play[0]});
   }
   return error;
 }
@@ -154,8 +158,10 @@ ReachCauses find_causes(const ReachProblem& problem, const Places& solution) {
   unfixed.rig.fixed.reset();
   causes.rms_unfixed = best_of(unfixed, ReachNlp(unfixed, ReachGoal::rms), from).value;
 
-  const bool has_links = !interlinks(problem.rig).empty();
-  const ReachNlp free_links(problem, ReachGoal::rms, has_links);
+  const auto& links = problem.rig.interlinks;
+  const bool one_length = links && links->lengths.empty() && !links->has_play() && !links->stiffness &&
+                          !interlinks(problem.rig).empty();
+  const ReachNlp free_links(problem, ReachGoal::rms, one_length);
   const Best rescaled = best_of(problem, free_links, from);
   causes.rms_rescaled = rescaled.value;
   causes.link_scale = rescaled.solved > 0 ? free_links.link_scale(rescaled.outcome.variables) : kNaN;

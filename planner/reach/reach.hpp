@@ -43,7 +43,7 @@ struct ReachResult {
   std::vector<double> per_gripper;         ///< distance of each reachable place to its target [m]
   double floor_rms = 0;                    ///< smallest possible r.m.s. distance [m]
   double floor_max = 0;                    ///< smallest possible largest distance (a solve of its own) [m]
-  double link_violation = 0;               ///< largest |length - spacing| over both solutions [m]
+  double link_violation = 0;               ///< largest error of an interlink's length, beyond its stops [m]
   double start_spread = 0;                 ///< largest difference of floor_rms between the starts [m]
   double start_spread_max = 0;             ///< the same of floor_max [m]
   ReachCauses causes;

@@ -123,13 +123,24 @@ std::string terms_line(const Model& model) {
   return fmt::format("[{}]", fmt::join(model.term_names(), "] ["));
 }
 
+namespace {
+
+/// The picture is of the end of the run: of a ply that was pressed, as it is under pressure.
+std::string subtitle_of(const Drape& drape) {
+  if (!drape.score.valid) return drape.score.reason;
+  const std::string objective = fmt::format("objective {:.2f}", drape.score.objective);
+  if (!drape.other) return objective;
+  return fmt::format("pressed; {} {} pressing", objective, drape.other->before ? "after" : "before");
+}
+
+}  // namespace
+
 DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
                        const std::string& title) {
   const Mesh& mesh = problem.model(fidelity).scene().mesh;
   const double thickness = problem.definition().material.thickness;
   DrapePanel panel{.title = title,
-                   .subtitle = drape.score.valid ? fmt::format("objective {:.2f}", drape.score.objective)
-                                                 : drape.score.reason,
+                   .subtitle = subtitle_of(drape),
                    .mesh = mesh,
                    .position = drape.run.final.position,
                    .gap = drape.gap,
@@ -189,25 +200,13 @@ void write_frames(const std::filesystem::path& folder, const std::string& name, 
   write_pvd(folder / (name + ".pvd"), entries);
 }
 
-void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result) {
+namespace {
+
+/// The page of a plan. @param drape, sequence  pictures, as SVG.
+PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const std::string& drape,
+                   const std::string& sequence) {
   const RigOptions& rig = *problem.definition().grippers;
   const StagedResult& search = result.search;
-  write_schedule(folder / "schedule.json", search.best.schedule, rig);
-  write_schedule_csv(folder / "schedule.csv", search.best.schedule, rig);
-  write_schedule(folder / "schedule_uniform.json", search.uniform.schedule, rig);
-  write_schedule(folder / "schedule_wave.json", search.wave.schedule, rig);
-
-  const Mesh& mesh = problem.model(kReport).scene().mesh;
-  const std::array<std::pair<const char*, const Drape*>, 3> drapes{
-      {{"uniform", &result.uniform}, {"wave", &result.wave}, {"optimised", &result.best}}};
-  std::vector<DrapePanel> panels;
-  for (const auto& [name, drape] : drapes) {
-    write_frames(folder, name, mesh, drape->frames, &*problem.definition().mold,
-                 problem.definition().material.thickness);
-    panels.push_back(drape_panel(problem, *drape, kReport, name));
-  }
-  write_mold_vtu(folder / "mold.vtu", *problem.definition().mold);
-
   PlanReport report;
   report.title = problem.definition().name;
   report.description = problem.definition().description;
@@ -215,10 +214,6 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
   report.reach = explain_reach(problem.reach_problem(), problem.reach()) + " " + problem.ply_floor().meaning;
   report.rows = rows_of(problem, result);
   report.notes = notes_of(problem);
-  const std::string drape = drape_picture(panels, problem.definition().mold->extent());
-  const std::string sequence = schedule_picture(search.best.schedule, rig, "Optimised sequence");
-  write_text(folder / "drape.svg", drape);
-  write_text(folder / "sequence.svg", sequence);
   report.figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", drape},
                     {"Who goes down when", sequence},
                     {"Heights of the joints over time",
@@ -245,11 +240,40 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
                   {"optimised.pvd", "the optimised drape over time, for ParaView"},
                   {"mold.vtu", "the mold, for ParaView"}};
   if (result.design) {
-    write_text(folder / kDesignFile, dump_json(resolved_case(problem.definition()), 2) + "\n");
     report.files.emplace_back(kDesignFile, "the case with what was changed of the rig; it runs on its own");
     report.notes.push_back(design_note(result));
   }
-  write_text(folder / "report.html", html_report(report));
+  return report;
+}
+
+}  // namespace
+
+void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result) {
+  const RigOptions& rig = *problem.definition().grippers;
+  const StagedResult& search = result.search;
+  write_schedule(folder / "schedule.json", search.best.schedule, rig);
+  write_schedule_csv(folder / "schedule.csv", search.best.schedule, rig);
+  write_schedule(folder / "schedule_uniform.json", search.uniform.schedule, rig);
+  write_schedule(folder / "schedule_wave.json", search.wave.schedule, rig);
+
+  const Mesh& mesh = problem.model(kReport).scene().mesh;
+  const std::array<std::pair<const char*, const Drape*>, 3> drapes{
+      {{"uniform", &result.uniform}, {"wave", &result.wave}, {"optimised", &result.best}}};
+  std::vector<DrapePanel> panels;
+  for (const auto& [name, drape] : drapes) {
+    write_frames(folder, name, mesh, drape->frames, &*problem.definition().mold,
+                 problem.definition().material.thickness);
+    panels.push_back(drape_panel(problem, *drape, kReport, name));
+  }
+  write_mold_vtu(folder / "mold.vtu", *problem.definition().mold);
+
+  const std::string drape = drape_picture(panels, problem.definition().mold->extent());
+  const std::string sequence = schedule_picture(search.best.schedule, rig, "Optimised sequence");
+  write_text(folder / "drape.svg", drape);
+  write_text(folder / "sequence.svg", sequence);
+  if (result.design)
+    write_text(folder / kDesignFile, dump_json(resolved_case(problem.definition()), 2) + "\n");
+  write_text(folder / "report.html", html_report(page_of(problem, result, drape, sequence)));
 }
 
 std::string comparison_table(const DrapeProblem& problem, const PlanResult& result) {

@@ -83,7 +83,7 @@ TEST(Geodesic, DirectionOnASphereIsThatOfTheGreatCircle) {
   EXPECT_LE((geodesic_direction(mold, start, goal.head<2>()) - direction).norm(), 1e-10);
 }
 
-TEST(Geodesic, DirectionOnTheSeedMoldLeadsThroughTheGoal) {
+TEST(Geodesic, DirectionOnTheArticlesMoldLeadsThroughTheGoal) {
   const Mold mold = article_mold();
   const Eigen::Vector2d start(0.225, 0.225);
   for (const Eigen::Vector2d& goal :

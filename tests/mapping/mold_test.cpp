@@ -76,7 +76,7 @@ TEST(Mold, BatchHeightsEqualTheJets) {
   }
 }
 
-TEST(Mold, HeightsOfTheSeedMoldFollowItsEquation) {
+TEST(Mold, HeightsOfTheArticlesMoldFollowItsEquation) {
   const Mold mold = article_mold();
   const double x = 0.31, y = 0.12;
   const double z = 1.004 * x + 1.089 * y - 3.667 * x * x - 4.4 * x * y - 3.75 * y * y + 3.086 * x * x * x +
@@ -84,7 +84,7 @@ TEST(Mold, HeightsOfTheSeedMoldFollowItsEquation) {
   EXPECT_NEAR(mold.height(x, y), z, 1e-15);
 }
 
-TEST(Mold, GaussianCurvatureOfTheSeedMoldMatchesItsFigure) {
+TEST(Mold, GaussianCurvatureOfTheArticlesMoldMatchesItsFigure) {
   const CurvatureRange range = gaussian_curvature_range(article_mold());
   EXPECT_NEAR(range.smallest, -25.46, 0.01);
   EXPECT_NEAR(range.largest, 23.41, 0.01);

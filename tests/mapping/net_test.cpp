@@ -210,7 +210,7 @@ TEST(Net, FibresKeepTheirFlatLengthAndNodesLieOnTheMold) {
 // Golden: largest and mean shear of the 405 mm ply at 5 mm cells, sampled at the cells' middles. The
 // tolerance is that of the printed digits; the largest one still grows by 0.3 degrees as the outermost
 // middles near the ply's corner under refinement.
-TEST(Net, ShearOnTheSeedMoldForTheThreeGenerators) {
+TEST(Net, ShearOnTheArticlesMoldForTheThreeGenerators) {
   constexpr double kDegree = kPi / 180;
   const struct {
     Generators generators;
@@ -225,7 +225,7 @@ TEST(Net, ShearOnTheSeedMoldForTheThreeGenerators) {
   }
 }
 
-TEST(Net, PlacesConvergeWithSecondOrderOnTheSeedMold) {
+TEST(Net, PlacesConvergeWithSecondOrderOnTheArticlesMold) {
   for (const Generators generators : kAllGenerators) {
     const std::vector<Eigen::Vector3d> fine = mapped_corners(article_net(generators, 0.405 / 256));
     double previous = 0;

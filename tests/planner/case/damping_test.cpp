@@ -42,7 +42,7 @@ json pascal(double value) {
   return std::to_string(value) + " Pa";
 }
 
-TEST(Damping, OfTheSeedsStripIs22PerSecond) {
+TEST(Damping, OfTheArticlesStripIs22PerSecond) {
   EXPECT_NEAR(modulus_at(11), 691.5e6, 0.5e6);
   const json strip = {
       {"by", "strip"}, {"ratio", 1}, {"length", "150 mm"}, {"modulus", pascal(modulus_at(11))}};

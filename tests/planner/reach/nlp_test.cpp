@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(AllFormulations, ReachDerivatives,
 // ---- the solution
 
 // Second-order sufficient condition: the Lagrangian's Hessian is positive on the null space of the Jacobian.
-TEST(Reach, TheBestPositionOnTheSeedsMoldIsAStrictMinimum) {
+TEST(Reach, TheBestPositionOnTheArticlesMoldIsAStrictMinimum) {
   ReachProblem problem = article_problem();
   problem.rig.tilt_limit = std::numbers::pi / 2;  // no inequalities
   const ReachNlp nlp(problem, ReachGoal::rms);

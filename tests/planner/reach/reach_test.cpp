@@ -63,6 +63,29 @@ TEST(Reach, WithoutInterlinksEveryTargetIsReached) {
   EXPECT_EQ(explain_reach(problem, result), "The rig can put every pad on its target.");
 }
 
+// What the case says of interlinks: lengths of their own, stops around them, springs.
+TEST(Reach, InterlinksAreAsLongAsTheCaseSays) {
+  ReachProblem problem = article_problem(0.002);
+  problem.rig.fixed.reset();
+  const double rigid = solve_reach(problem).floor_max;
+  EXPECT_GT(rigid, 1e-3);
+  ReachProblem mapped = problem;
+  std::vector<Eigen::Vector3d> joints;
+  for (const Eigen::Vector3d& t : problem.targets)
+    joints.push_back(t + (0.002 + problem.ply_thickness) * problem.mold.normal(t.x(), t.y()));
+  for (const auto& [i, j] : interlinks(problem.rig))
+    mapped.rig.interlinks->lengths.push_back((joints[size_t(i)] - joints[size_t(j)]).norm());
+  EXPECT_LE(solve_reach(mapped).floor_max, 1e-9);
+  ReachProblem play = problem;
+  play.rig.interlinks->play = {0.001, 0};
+  const ReachResult some = solve_reach(play);
+  EXPECT_LT(some.floor_max, 0.9 * rigid);
+  EXPECT_LE(some.link_violation, 1e-6);
+  ReachProblem springs = problem;
+  springs.rig.interlinks->stiffness = 1e5;
+  EXPECT_LE(solve_reach(springs).floor_max, 1e-9);
+}
+
 TEST(Reach, AFlatRigReachesFlatTargets) {
   RigOptions rig = grid(4, 3, 0.1, 0.02);
   rig.fixed = {2, 2};
@@ -176,7 +199,7 @@ TEST(Reach, APadSteeperThanItsTiltLimitStopsAtTheLimit) {
 
 // ---- the article's rig
 
-TEST(Reach, TenRandomStartsOnTheSeedsMoldFindTheSameFloor) {
+TEST(Reach, TenRandomStartsOnTheArticlesMoldFindTheSameFloor) {
   for (const double offset : {0.0, 0.02}) {
     const ReachResult result = solve_reach(article_problem(offset), 10);
     ASSERT_TRUE(result.converged) << result.status;
@@ -224,7 +247,7 @@ TEST(Reach, TheSolutionTurnsWithTheScene) {
 // With the targets of the energy mapping. The rig without offset nearly fits the mold, as its interlinks are
 // chords of the fabric; the offset alone spoils it, and in proportion: joint distances change by offset times
 // curvature.
-TEST(Reach, TheSeedsFloorGrowsInProportionToTheJointOffset) {
+TEST(Reach, TheArticlesFloorGrowsInProportionToTheJointOffset) {
   ReachProblem problem = article_problem();
   const Ply ply{0.405, 0.405, problem.fixed_place, 0};
   MappingOptions options;
