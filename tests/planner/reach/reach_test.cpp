@@ -77,7 +77,7 @@ TEST(Reach, InterlinksAreAsLongAsTheCaseSays) {
     mapped.rig.interlinks->lengths.push_back((joints[size_t(i)] - joints[size_t(j)]).norm());
   EXPECT_LE(solve_reach(mapped).floor_max, 1e-9);
   ReachProblem play = problem;
-  play.rig.interlinks->play = {0.001, 0};
+  play.rig.interlinks->play = {0.002, 0.002};
   const ReachResult some = solve_reach(play);
   EXPECT_LT(some.floor_max, 0.9 * rigid);
   EXPECT_LE(some.link_violation, 1e-6);
