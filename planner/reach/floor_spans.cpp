@@ -1,7 +1,8 @@
 // What holds a floor up, in spans between grippers and in words.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 #include "planner/reach/floor_nlp.hpp"
@@ -9,6 +10,7 @@
 namespace drapeplan {
 namespace {
 
+constexpr double kLeastGain = 0.05;   // mm of the floor per mm of a span: a span below it holds nothing up
 constexpr double kNegligible = 1e-4;  // [m]: finer than a ply is ever placed
 /// Spans that add less than this to the gain of the first one are not told.
 constexpr double kMinorShare = 0.1;
@@ -52,9 +54,7 @@ struct Line {
 };
 
 std::string millimetres(double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f mm", length * 1e3);
-  return text;
+  return fmt::format("{:.1f} mm", 1e3 * length);
 }
 
 std::string span_words(const RigOptions& rig, const TautSpan& span) {
@@ -110,18 +110,13 @@ std::string front_table(const FloorFront& front) {
       "smallest possible largest gap of the ply, by how far its edge may be off\n"
       "  edge within [mm]   gap [mm]   r.m.s. gap [mm]   edge off by [mm]\n";
   for (const FloorPoint& point : front.points) {
-    char line[128], tolerance[32];
-    std::snprintf(tolerance, sizeof tolerance, "%g", 1e3 * point.boundary_tolerance);
-    const std::string within = std::isinf(point.boundary_tolerance) ? "anywhere" : tolerance;
-    std::snprintf(line, sizeof line, "  %16s", within.c_str());
-    text += line;
-    if (point.converged) {
-      std::snprintf(line, sizeof line, "%11.2f%18.2f%19.1f\n", 1e3 * point.gap, 1e3 * point.rms_gap,
-                    1e3 * point.boundary_offset);
-      text += line;
-    } else {
-      text += "   " + point.status + "\n";
-    }
+    const std::string within = std::isinf(point.boundary_tolerance)
+                                   ? "anywhere"
+                                   : fmt::format("{:g}", 1e3 * point.boundary_tolerance);
+    text += fmt::format("  {:>16}", within);
+    text += point.converged ? fmt::format("{:11.2f}{:18.2f}{:19.1f}\n", 1e3 * point.gap, 1e3 * point.rms_gap,
+                                          1e3 * point.boundary_offset)
+                            : fmt::format("   {}\n", point.status);
   }
   return text;
 }
@@ -136,33 +131,35 @@ std::string explain_floor(const FloorProblem& problem, const FloorFront& front, 
       point = &one;
   }
   if (point == nullptr) return "No boundary tolerance was asked for.";
-  const std::string where =
-      std::isinf(point->boundary_tolerance)
-          ? "Wherever its edge ends"
-          : "With its edge within " + millimetres(point->boundary_tolerance) + " of the prescribed boundary";
-  if (!point->converged) return where + ", no floor of the ply's gap was found: " + point->status + ".";
+  const std::string where = std::isinf(point->boundary_tolerance)
+                                ? "Wherever its edge ends"
+                                : fmt::format("With its edge within {} of the prescribed boundary",
+                                              millimetres(point->boundary_tolerance));
+  if (!point->converged)
+    return fmt::format("{}, no floor of the ply's gap was found: {}.", where, point->status);
   if (point->gap <= kNegligible) return where + ", the ply can lie on the mold everywhere.";
-  char strain[32];
-  std::snprintf(strain, sizeof strain, "%.2g %%", 100 * problem.fibre_strain);
-  std::string text = where + ", a ply whose fibres stretch by " + strain + " at most keeps a gap of " +
-                     millimetres(point->gap) + " somewhere, whatever the schedule.";
+  std::string text = fmt::format(
+      "{}, a ply whose fibres stretch by {:.2g} % at most keeps a gap of {} somewhere, whatever the "
+      "schedule.",
+      where, 100 * problem.fibre_strain, millimetres(point->gap));
   size_t told = 0;
   for (const TautSpan& span : point->spans) {
-    if (told == kMostSpans || span.gain < kMinorShare * point->spans.front().gain) break;
-    char gain[32];
-    std::snprintf(gain, sizeof gain, "%.1f", span.gain);
+    if (told == kMostSpans || span.gain < std::max(kLeastGain, kMinorShare * point->spans.front().gain))
+      break;
     text += told == 0 ? " What holds it up most: " : "; ";
     text += span_words(problem.rig, span);
     if (span.shortage > kNegligible)
-      text += " is " + millimetres(span.shortage) + " too short for the mold below";
-    text += std::string(told == 0 ? " (a millimetre more there would lower the floor by " : " (") + gain +
-            (told == 0 ? " mm)" : ")");
+      text += fmt::format(" is {} too short for the mold below", millimetres(span.shortage));
+    text += told == 0
+                ? fmt::format(" (a millimetre more there would lower the floor by {:.1f} mm)", span.gain)
+                : fmt::format(" ({:.1f})", span.gain);
     ++told;
   }
-  if (told > 0) text += ".";
+  text +=
+      told > 0 ? "." : " No span of fibres holds it up: what is left stands at the rims of the rigid pads.";
   if (front.converged > 1 && front.start_spread > kNegligible)
-    text += " The starts of the search disagree by up to " + millimetres(front.start_spread) +
-            ": a lower floor may exist.";
+    text += fmt::format(" The starts of the search disagree by up to {}: a lower floor may exist.",
+                        millimetres(front.start_spread));
   return text;
 }
 
