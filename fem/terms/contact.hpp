@@ -30,7 +30,7 @@ struct ReleasedSprings {
 struct Tack {
   double stress = 0;  ///< [Pa]
   /// How far a node may be pulled off before its bond breaks [m]. Assumed: about the resin that lies on a
-  /// prepreg of 0.3 mm. With the stress it gives the work of separation per area: 3 J/m^2 for 30 kPa.
+  /// prepreg of 0.3 mm. With the stress it gives the work of adhesion per area: 3 J/m^2 for 30 kPa.
   double reach = 1e-4;
 };
 
@@ -57,7 +57,7 @@ struct NodalTack {
 /// force; with this force it yields until it is `reach` off the mold, or as far as its spring needs to have
 /// the force. There the bond breaks, and the node must touch again to have a new one. Bonds add their force
 /// to the limit of friction. Pulling off takes force times (reach - half the spring's part), whatever the
-/// path. Stress times area: it does not depend on the mesh, but a peeling edge takes the work of separation
+/// path. Stress times area: it does not depend on the mesh, but a peeling edge takes the work of adhesion
 /// only where its front, (bending stiffness reach / stress)^(1/4) long, spans some elements; with longer ones
 /// it takes more, up to the stress times their length.
 /// @param surface  distance of the touching face from the nodes [m] (half the ply).

@@ -17,21 +17,6 @@ Outcome failed(Outcome outcome, const std::string& reason) {
   return outcome;
 }
 
-/// What a schedule cannot do is a score with a reason. All else that is thrown passes: no memory, or a bug.
-Outcome scored(const Evaluate& evaluate, const Schedule& schedule, const std::string& fidelity) {
-  try {
-    Outcome outcome = evaluate(schedule, fidelity);
-    if (outcome.score.valid && !std::isfinite(outcome.score.objective)) {
-      return failed(std::move(outcome), "the objective is not finite");
-    }
-    return outcome;
-  } catch (const WrongInput& error) {
-    return failed({}, error.what());
-  } catch (const NotFinished& error) {
-    return failed({}, error.what());
-  }
-}
-
 /// Per schedule the index of the first equal one: equal schedules of one batch must not race for who runs.
 std::vector<size_t> first_occurrences(const std::vector<Schedule>& schedules) {
   std::map<std::uint64_t, size_t> seen;
@@ -44,6 +29,27 @@ std::vector<size_t> first_occurrences(const std::vector<Schedule>& schedules) {
 
 }  // namespace
 
+Outcome outcome_of(const Drape& drape) {
+  return {.score = drape.score,
+          .other = drape.other,
+          .summary = drape.run.summary,
+          .wall_seconds = drape.run.summary.wall_seconds};
+}
+
+Outcome scored(const std::function<Outcome()>& run) {
+  try {
+    Outcome outcome = run();
+    if (outcome.score.valid && !std::isfinite(outcome.score.objective)) {
+      return failed(std::move(outcome), "the objective is not finite");
+    }
+    return outcome;
+  } catch (const WrongInput& error) {
+    return failed({}, error.what());
+  } catch (const NotFinished& error) {
+    return failed({}, error.what());
+  }
+}
+
 BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int threads, std::uint64_t design) {
   return [evaluate = std::move(evaluate), &log, threads, design](
              const std::vector<Schedule>& schedules, const std::string& fidelity, const std::string& stage) {
@@ -55,7 +61,7 @@ BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int thr
     const auto one = [&](int i) {
       const auto k = size_t(i);
       if (first[k] == k) {
-        const auto run = [&] { return scored(evaluate, schedules[k], fidelity); };
+        const auto run = [&] { return scored([&] { return evaluate(schedules[k], fidelity); }); };
         outcomes[k] = log.evaluate_once(candidate_hash(design, schedules[k]), fidelity, run);
       }
       const std::scoped_lock lock(order);

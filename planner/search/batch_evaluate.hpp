@@ -5,9 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "planner/drape/problem.hpp"
 #include "planner/search/evaluation_log.hpp"
 
 namespace drapeplan {
+
+/// What a search keeps of a drape.
+Outcome outcome_of(const Drape& drape);
+
+/// What a candidate cannot do is a score with a reason, and so is an objective that is not finite. All else
+/// that is thrown passes: no memory, or a bug.
+Outcome scored(const std::function<Outcome()>& run);
 
 /// One simulation and its score. WrongInput and NotFinished are failed outcomes; whatever else it throws (no
 /// memory, a bug) ends the batch. Safe to call concurrently.

@@ -11,7 +11,7 @@
 #include "planner/base/parallel.hpp"
 #include "planner/case/design.hpp"
 #include "planner/case/file.hpp"
-#include "planner/drape/scoring.hpp"
+#include "planner/search/batch_evaluate.hpp"
 #include "planner/search/cmaes.hpp"
 
 namespace drapeplan {
@@ -66,20 +66,6 @@ std::shared_ptr<const DrapeProblem> problem_with(const DrapeProblem& base,
   return std::make_shared<const DrapeProblem>(std::move(reading.definition));
 }
 
-Outcome evaluate(const DrapeProblem& problem, const Schedule& schedule, const std::string& fidelity) {
-  const Drape drape = problem.run(schedule, fidelity);
-  return {.score = drape.score,
-          .other = drape.other,
-          .summary = drape.run.summary,
-          .wall_seconds = drape.run.summary.wall_seconds};
-}
-
-Outcome failed(const std::exception& error) {
-  Outcome outcome;
-  outcome.score = failed_score(error.what());
-  return outcome;
-}
-
 /// A place in the joint space: shares of the design variables, then the coordinates of a wave.
 class JointSpace {
  public:
@@ -103,35 +89,28 @@ class JointSpace {
     return list;
   }
 
-  /// Maps, builds and drapes a candidate, unless the log knows it.
-  [[nodiscard]] Outcome outcome(const Eigen::VectorXd& x, const std::string& fidelity, EvaluationLog& log,
-                                std::uint64_t& hash) const {
-    const std::vector<std::string> changes = overrides(x);
-    try {
-      const auto problem = problem_with(base_, changes);
+  /// What tells candidates apart: known before anything is mapped.
+  [[nodiscard]] std::uint64_t hash(const Eigen::VectorXd& x) const {
+    Fnv1a hash;
+    hash.add(design_hash(overrides(x)));
+    for (const double coordinate : x.tail<WaveFamily::kDimension>()) hash.add(coordinate);
+    return hash.value();
+  }
+
+  /// Maps, builds and drapes a candidate.
+  [[nodiscard]] Outcome drape(const Eigen::VectorXd& x, const std::string& fidelity) const {
+    return scored([&] {
+      const auto problem = problem_with(base_, overrides(x));
       const WaveFamily family(problem->frame());
-      const Schedule schedule =
-          to_schedule(problem->frame(), family.decode(x.tail<WaveFamily::kDimension>()));
-      hash = candidate_hash(design_hash(changes), schedule);
-      return log.evaluate_once(hash, fidelity, [&] { return evaluate(*problem, schedule, fidelity); });
-    } catch (const WrongInput& error) {
-      hash = design_hash(changes);
-      return failed(error);
-    } catch (const NotFinished& error) {
-      hash = design_hash(changes);
-      return failed(error);
-    }
+      const Strokes strokes = family.decode(x.tail<WaveFamily::kDimension>());
+      return outcome_of(problem->run(to_schedule(problem->frame(), strokes), fidelity));
+    });
   }
 
  private:
   const DrapeProblem& base_;
   const std::vector<DesignVariable>& variables_;
 };
-
-double value_of(const Outcome& outcome) {
-  const bool good = outcome.score.valid && std::isfinite(outcome.score.objective);
-  return good ? outcome.score.objective : std::numeric_limits<double>::infinity();
-}
 
 /// As it would be on another rig: every path is shifted to its own target there, all start at one height.
 Schedule carried_over(const Schedule& schedule, const SequenceFrame& from, const SequenceFrame& to) {
@@ -168,15 +147,18 @@ DesignResult search_design(const DrapeProblem& base, const std::string& fidelity
          search.stop_reason().empty()) {
     const Eigen::MatrixXd x = search.ask();
     std::vector<Outcome> outcomes(size_t(x.cols()));
-    std::vector<std::uint64_t> hashes(size_t(x.cols()), 0);
     parallel_for(
         int(x.cols()),
-        [&](int k) { outcomes[size_t(k)] = space.outcome(x.col(k), fidelity, log, hashes[size_t(k)]); },
+        [&](int k) {
+          const Eigen::VectorXd place = x.col(k);
+          outcomes[size_t(k)] =
+              log.evaluate_once(space.hash(place), fidelity, [&] { return space.drape(place, fidelity); });
+        },
         threads);
     Eigen::VectorXd values(x.cols());
     for (Eigen::Index k = 0; k < x.cols(); ++k) {
       const Outcome& outcome = outcomes[size_t(k)];
-      if (!outcome.cached) log.write(hashes[size_t(k)], fidelity, "design", outcome);
+      if (!outcome.cached) log.write(space.hash(x.col(k)), fidelity, "design", outcome);
       values[k] = value_of(outcome);
       if (values[k] < lowest) lowest = values[k], best = x.col(k);
     }
@@ -208,18 +190,15 @@ void compare_changes(const DrapeProblem& base, const Schedule& best, EvaluationL
         DesignChange& change = design.changes[size_t(k)];
         std::vector<std::string> others = design.overrides;
         others[size_t(k)] = change.path + "=" + change.before;
-        try {
-          const auto problem = problem_with(base, others);
-          const Schedule schedule = carried_over(best, design.problem->frame(), problem->frame());
-          const std::uint64_t hash = candidate_hash(design_hash(others), schedule);
-          change.without =
-              log.evaluate_once(hash, kReport, [&] { return evaluate(*problem, schedule, kReport); });
-          if (!change.without.cached) log.write(hash, kReport, "without " + change.path, change.without);
-        } catch (const WrongInput& error) {
-          change.without = failed(error);
-        } catch (const NotFinished& error) {
-          change.without = failed(error);
-        }
+        const std::uint64_t hash = candidate_hash(design_hash(others), best);
+        change.without = log.evaluate_once(hash, kReport, [&] {
+          return scored([&] {
+            const auto problem = problem_with(base, others);
+            return outcome_of(
+                problem->run(carried_over(best, design.problem->frame(), problem->frame()), kReport));
+          });
+        });
+        if (!change.without.cached) log.write(hash, kReport, "without " + change.path, change.without);
       },
       threads);
 }

@@ -118,6 +118,11 @@ void require_begin_of_header(const std::string& path, const std::string& text,
 
 }  // namespace
 
+double value_of(const Outcome& outcome) {
+  const bool good = outcome.score.valid && std::isfinite(outcome.score.objective);
+  return good ? outcome.score.objective : kInfinity;
+}
+
 std::uint64_t schedule_hash(const Schedule& schedule) {
   Fnv1a hash;
   const auto add_double = [&hash](double value) { hash.add(value == 0 ? 0.0 : value); };

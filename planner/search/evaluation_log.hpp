@@ -28,6 +28,9 @@ struct Outcome {
   bool cached = false;      ///< served without a run
 };
 
+/// What a search minimises: the objective; infinite if the run failed.
+double value_of(const Outcome& outcome);
+
 /// One line of the log.
 struct Evaluation {
   int number = 0;  ///< running, from 1, in the order of the file

@@ -114,10 +114,7 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
   const Evaluate evaluate = [&](const Schedule& schedule, const std::string& fidelity) {
     const bool report = fidelity == kReport;
     Drape drape = problem.run(schedule, fidelity, report ? kFrames : 0);
-    Outcome outcome{.score = drape.score,
-                    .other = drape.other,
-                    .summary = drape.run.summary,
-                    .wall_seconds = drape.run.summary.wall_seconds};
+    Outcome outcome = outcome_of(drape);
     if (report) reported.offer(schedule_hash(schedule), std::move(drape));
     return outcome;
   };

@@ -38,11 +38,6 @@ Trial make_trial(std::string name, Strokes strokes) {
   return {std::move(name), std::move(strokes), kInfinity};
 }
 
-double value_of(const Outcome& outcome) {
-  const bool good = outcome.score.valid && std::isfinite(outcome.score.objective);
-  return good ? outcome.score.objective : kInfinity;
-}
-
 bool better(const Trial& a, const Trial& b) {
   return a.objective < b.objective;
 }

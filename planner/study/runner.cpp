@@ -157,21 +157,21 @@ void StudyRunner::keep(const std::string& key, const StudyRun& run) {
 
 std::vector<StudyRun> StudyRunner::run(const std::string& what, const std::vector<StudyJob>& jobs) {
   std::vector<std::string> keys;
-  std::vector<size_t> todo;
+  std::vector<size_t> missing;
   std::set<std::string> asked;
   for (size_t k = 0; k < jobs.size(); ++k) {
     keys.push_back(key_of(jobs[k]));
-    if (known_.count(keys.back()) == 0 && asked.insert(keys.back()).second) todo.push_back(k);
+    if (known_.count(keys.back()) == 0 && asked.insert(keys.back()).second) missing.push_back(k);
   }
   std::mutex mutex;
   int done = 0;
   parallel_for(
-      int(todo.size()),
+      int(missing.size()),
       [&](int k) {
-        const StudyRun run = measured(jobs[todo[size_t(k)]]);
+        const StudyRun run = measured(jobs[missing[size_t(k)]]);
         const std::lock_guard<std::mutex> lock(mutex);
-        keep(keys[todo[size_t(k)]], run);
-        if (progress_) progress_(what, ++done, int(todo.size()));
+        keep(keys[missing[size_t(k)]], run);
+        if (progress_) progress_(what, ++done, int(missing.size()));
       },
       options_.threads);
   std::vector<StudyRun> runs;

@@ -1,4 +1,4 @@
-// A bonded beam whose clamped end is lifted: it peels as the work of separation says.
+// A bonded beam whose clamped end is lifted: it peels as the work of adhesion says.
 #include "fem/run/simulate.hpp"
 #include "tests/mapping/molds.hpp"
 #include "tests/verification/kit.hpp"
@@ -75,7 +75,7 @@ double peel_force(int along) {
   return sum / count / kWidth;
 }
 
-TEST(Peel, OfALiftedBeamConvergesToTheForceThatTheWorkOfSeparationAsksFor) {
+TEST(Peel, OfALiftedBeamConvergesToTheForceThatTheWorkOfAdhesionAsksFor) {
   const Peeled exact = peeled_by(0.95 * kLift);
   const double sharp =
       std::pow(18 * kBeam.bending_stiffness() * std::pow(exact.lift, 2) / (kTack.stress * kTack.reach), 0.25);

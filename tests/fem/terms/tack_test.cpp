@@ -59,7 +59,7 @@ TEST(Tack, BreaksAHoldThatItsSpringReachesLateOnlyThere) {
   EXPECT_EQ(node.at(3.1e-4), 0);
 }
 
-TEST(Tack, TakesTheWorkOfSeparationOnceAndNothingOnLoops) {
+TEST(Tack, TakesTheWorkOfAdhesionOnceAndNothingOnLoops) {
   const auto work = [](const std::vector<double>& gaps) {
     Node node;
     double sum = 0;
