@@ -42,6 +42,9 @@ struct RunRecord {
   double fibre_strain = 0;       ///< tension at mid-thickness [-]
   double fibre_compression = 0;  ///< magnitude [-]
   double actuator_force = 0;     ///< [N], every step
+  double lag = 0;                ///< of a joint from its command while its pad touches nothing [m]
+  double saturated = 0;          ///< how long some actuator was at its limit of force [s]
+  double looked = 0;             ///< when the rig was last watched [s]
   double link_error = 0;         ///< of interlinks and guides [m], every step
   double penetration = 0;        ///< of the ply's underside into the mold [m]
   double energy = 0;             ///< largest magnitude of a book [J]
@@ -129,10 +132,11 @@ void visit_fields(EitherConst<PadState> auto& of, const auto& visit) {
 
 /// Hands every figure of a record to `visit(figure)`.
 void visit_fields(EitherConst<RunRecord> auto& of, const auto& visit) {
-  auto& [fibre_strain, fibre_compression, actuator_force, link_error, penetration, energy, balance,
-         hourglass_share, kinetic_ratio, last_motion] = of;
-  for (auto* figure : {&fibre_strain, &fibre_compression, &actuator_force, &link_error, &penetration, &energy,
-                       &balance, &hourglass_share, &kinetic_ratio, &last_motion}) {
+  auto& [fibre_strain, fibre_compression, actuator_force, lag, saturated, looked, link_error, penetration,
+         energy, balance, hourglass_share, kinetic_ratio, last_motion] = of;
+  for (auto* figure :
+       {&fibre_strain, &fibre_compression, &actuator_force, &lag, &saturated, &looked, &link_error,
+        &penetration, &energy, &balance, &hourglass_share, &kinetic_ratio, &last_motion}) {
     visit(*figure);
   }
 }

@@ -224,6 +224,18 @@ Vector3d GripperRig::actuator_force(const State& state, const RigDrive& drive, i
   return force;
 }
 
+double GripperRig::lag(const State& state, const RigDrive& drive, int g) const {
+  const Vector3d place = joint(state.pads[size_t(g)]);
+  const Command command = drive.schedule->command(g, state.time * drive.time_scaling);
+  const double down = command.z - place.z();
+  if (rig_.driven == Driven::z) return std::abs(down);
+  return std::hypot((command.xy - place.head<2>()).norm(), down);
+}
+
+bool GripperRig::saturated(const State& state, const RigDrive& drive, int g) const {
+  return actuator_force(state, drive, g).lpNorm<Eigen::Infinity>() >= rig_.actuator_force_limit;
+}
+
 /// Pads whose suction has ended at t lose their nodes. Velocities are continuous; kinetic energy is not
 /// quite, since a pad's inertia counts that of its nodes about its normal for all axes: the difference is
 /// booked.

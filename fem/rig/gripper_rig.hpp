@@ -84,6 +84,10 @@ class GripperRig {
   void drift(State& state) const;
 
   [[nodiscard]] double kinetic_energy(const State& state) const;
+  /// How far the joint of gripper g is from its command, in the driven directions [m].
+  [[nodiscard]] double lag(const State& state, const RigDrive& drive, int g) const;
+  /// Whether an actuator of gripper g gives all the force that it has.
+  [[nodiscard]] bool saturated(const State& state, const RigDrive& drive, int g) const;
   [[nodiscard]] Eigen::Vector3d joint(const PadState& pad) const {
     return pad.centre + pad.rotation * Eigen::Vector3d(0, 0, rig_.joint_offset);
   }

@@ -65,6 +65,7 @@ struct RigOptions {
   double actuator_stiffness = 1e4;          ///< [N/m]
   double actuator_force_limit = 50;         ///< [N]
   double max_velocity = 0.2;                ///< of a joint, vertical or in-plane [m/s]
+  std::optional<double> max_acceleration;   ///< of a joint, vertical or in-plane [m/s^2]; absent: no limit
   double blend_time = 0.1;                  ///< over which a change of velocity is spread [s]
   /// From the end of the last stroke until all suction ends [s]; absent: the ply is held to the end.
   std::optional<double> release_time;
@@ -89,8 +90,8 @@ struct RigOptions {
 /// Without the limits of schedules: what a schedule commands is its own matter.
 inline auto fields_of(const RigOptions& of) {
   const auto& [columns, rows, spacing, pad_radius, pad_mass, joint_offset, tilt_limit, rotation_limits,
-               driven, interlinks, fixed, actuator_stiffness, actuator_force_limit, max_velocity, blend_time,
-               release_time] = of;
+               driven, interlinks, fixed, actuator_stiffness, actuator_force_limit, max_velocity,
+               max_acceleration, blend_time, release_time] = of;
   return std::tie(columns, rows, spacing, pad_radius, pad_mass, joint_offset, tilt_limit, rotation_limits,
                   driven, interlinks, fixed, actuator_stiffness, actuator_force_limit);
 }

@@ -35,14 +35,20 @@ constexpr double kRoundStrain = 1e-9;
 /// A ply this fast stands still [m/s]: books below its kinetic energy are round-off, which has no sign.
 constexpr double kStill = 1e-9;
 
+/// A pad touches the mold where the gap of one of its nodes is below this share of the thickness: contact is
+/// a spring, so a pad that rests on it has nodes at or below zero.
+constexpr double kTouchShare = 0.1;
+
 double largest_energy(const Model& model, const State& state) {
   return std::max(state.record.energy, 0.5 * model.free_mass() * kStill * kStill);
 }
 
 }  // namespace
 
-Monitor::Monitor(const Model& model) : model_(model) {
+Monitor::Monitor(const Model& model, const RigDrive& drive)
+    : model_(model), drive_(drive), above_(size_t(model.node_count()), 0.0) {
   half_ = model.flat_state(0);  // takes its room
+  if (model.rig() && drive.schedule) tied_ = model.rig()->tied_by_pad();
   for (const double part : nodal_areas(model.scene().mesh)) area_ += part;
   if (!model.scene().mold) return;
   const State& flat = half_;
@@ -157,6 +163,7 @@ bool Monitor::look(State& state, RunSummary& summary) {
   if (fault.empty()) fault = fault_of_nodes(state);
   if (fault.empty()) fault = fault_of_strains(state);
   if (fault.empty()) fault = fault_on_mold(state);
+  if (fault.empty()) note_rig(state);
   if (fault.empty()) return true;
   summary.status = RunStatus::diverged;
   summary.message = fmt::format("{}, seen at step {}, t = {:g} s", fault, state.step, state.time);
@@ -176,6 +183,7 @@ void Monitor::note_penetration(State& state) {
     for (int k = 0; k < chunk; ++k) {
       const auto n = size_t(first + k);
       const double above = (state.position.z[n] - z[k]) / std::sqrt(1 + zx[k] * zx[k] + zy[k] * zy[k]);
+      above_[n] = above - surface;
       if (surface - above > 0)
         slid_ = std::max(slid_, beyond(mold.extent(), state.position.x[n], state.position.y[n]));
       if (!(surface - above > state.record.penetration)) continue;  // not defined here, or no worse
@@ -184,6 +192,24 @@ void Monitor::note_penetration(State& state) {
       state.record.penetration = std::max(state.record.penetration, surface - distance);
     }
   }
+}
+
+/// Pads on the mold stop short of a command that aims below it: only those that touch nothing lag behind.
+/// Where the mold is not defined, nothing is touched.
+void Monitor::note_rig(State& state) const {
+  RunRecord& record = state.record;
+  const double touch = kTouchShare * model_.scene().fabric.thickness;
+  bool saturated = false;
+  for (size_t g = 0; g < tied_.size(); ++g) {
+    if (state.pads[g].released) continue;
+    saturated = saturated || model_.rig()->saturated(state, drive_, int(g));
+    const bool touches = model_.scene().mold && std::any_of(tied_[g].begin(), tied_[g].end(), [&](int n) {
+                           return above_[size_t(n)] <= touch;
+                         });
+    if (!touches) record.lag = std::max(record.lag, model_.rig()->lag(state, drive_, int(g)));
+  }
+  if (saturated) record.saturated += state.time - record.looked;
+  record.looked = state.time;
 }
 
 void Monitor::compare_energies(State& state) const {

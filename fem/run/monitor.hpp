@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "fem/core/run_summary.hpp"
 #include "fem/run/simulate.hpp"
@@ -11,7 +12,8 @@ namespace drapeplan {
 
 class Monitor {
  public:
-  explicit Monitor(const Model& model);
+  /// @param drive  what the rig plays; without a rig it is not asked.
+  explicit Monitor(const Model& model, const RigDrive& drive = {});
 
   /// Looks at a state and notes the worst in its record. Returns false, with the reason in the summary, if
   /// the run cannot go on.
@@ -31,14 +33,18 @@ class Monitor {
   std::string fault_on_mold(State& state);
 
   void note_penetration(State& state);
+  void note_rig(State& state) const;
   bool holds_more(const State& state, double limit);
 
   const Model& model_;
-  double overhang_ = 0;  ///< of the flat start over the mold's edge [m]
-  double area_ = 0;      ///< of the ply [m^2]
-  double slid_ = 0;      ///< of nodes that touch at the last look, over it [m]
-  State half_;           ///< half a step before what is looked at; kept like strains_
-  Snapshot strains_;     ///< kept, so that looking allocates nothing after the first time
+  RigDrive drive_;
+  std::vector<std::vector<int>> tied_;  ///< nodes of each pad
+  std::vector<double> above_;           ///< of each node's underside over the mold at the last look [m]
+  double overhang_ = 0;                 ///< of the flat start over the mold's edge [m]
+  double area_ = 0;                     ///< of the ply [m^2]
+  double slid_ = 0;                     ///< of nodes that touch at the last look, over it [m]
+  State half_;                          ///< half a step before what is looked at; kept like strains_
+  Snapshot strains_;                    ///< kept, so that looking allocates nothing after the first time
 };
 
 /// Energies of a state, without the figures that need a history.

@@ -178,7 +178,7 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   const std::int64_t spans = std::max<std::int64_t>(frames - 1, 1);
   std::int64_t frame = state.step == 0 ? 0 : clock.passed(state.time, spans) + 1;
   Workspace work(model);
-  Monitor monitor(model);
+  Monitor monitor(model, drive);
   bool running = true, rests = false;
   while (running && !rests && !clock.ended(state) && state.time < clock.pause && state.step < last_step) {
     if (frame < frames && clock.passed(state.time, spans) >= frame) {

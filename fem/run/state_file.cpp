@@ -23,7 +23,7 @@
 namespace drapeplan {
 namespace {
 
-constexpr std::string_view kMagic = "drapeplan state 5\n";
+constexpr std::string_view kMagic = "drapeplan state 6\n";
 constexpr size_t kWord = 8;  // bytes
 
 void visit_fields(EitherConst<VectorField> auto& of, const auto& visit) {

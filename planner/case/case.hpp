@@ -50,11 +50,11 @@ struct DesignVariable {
 };
 
 struct OptimiseOptions {
-  int wave_evaluations = 120;     ///< budget of the wave family's search
-  int gripper_evaluations = 240;  ///< budget of the per-gripper search
-  int finalists = 4;              ///< best schedules that are evaluated at the reporting fidelity
-  double shortest_stroke = 1.0;   ///< of a gripper after the preshape [s]
-  double longest_sequence = 15;   ///< after the preshape [s]
+  double budget = 600;           ///< of a plan, with its reports [s]
+  int evaluations = 0;           ///< budget below the reporting fidelity; 0: `budget`
+  int finalists = 4;             ///< best schedules that are evaluated at the reporting fidelity
+  double shortest_stroke = 1.0;  ///< of a gripper after the preshape [s]
+  double longest_sequence = 15;  ///< after the preshape [s]
   unsigned seed = 1;
   std::vector<DesignVariable> design;
   int design_evaluations = 120;  ///< budget of the search over design and waves together

@@ -113,6 +113,10 @@ void visit_score(FieldVisitor& v, ScoreOptions& s) {
            {0, 90, true, true}});
   v.field(
       {"strain_limit", &s.strain_limit, "Fibre strain above it is penalised", Dimension::none, positive(1)});
+  v.field({"lag_tolerance", &s.lag_tolerance,
+           "How far joints may be behind their commands before their pads touch; a schedule that misses its "
+           "commands by more is no candidate",
+           Dimension::length, positive()});
   v.section({"weights", "Of the parts of the objective; 0 leaves a part out", false, {}, true}, true, [&] {
     v.field({"max_gap", &s.weight_max_gap, "Of the largest gap", Dimension::none, from(0)});
     v.field({"rms_gap", &s.weight_rms_gap, "Of the r.m.s. gap", Dimension::none, from(0)});
@@ -123,15 +127,17 @@ void visit_score(FieldVisitor& v, ScoreOptions& s) {
     v.field({"rms_boundary_offset", &s.weight_rms_boundary_offset, "Of the r.m.s. boundary offset",
              Dimension::none, from(0)});
     v.field({"shear", &s.weight_shear, "Per degree above the locking angle", Dimension::none, from(0)});
+    v.field({"lag", &s.weight_lag, "Per mm of lag above its tolerance", Dimension::none, from(0)});
     v.field({"duration", &s.weight_duration, "Per second of the schedule", Dimension::none, from(0)});
   });
 }
 
 void visit_optimise(FieldVisitor& v, OptimiseOptions& o) {
-  v.field({"wave_evaluations", &o.wave_evaluations, "Budget of the wave family's search", Dimension::none,
-           from(0, 1e6)});
-  v.field({"gripper_evaluations", &o.gripper_evaluations, "Budget of the per-gripper search", Dimension::none,
-           from(0, 1e6)});
+  v.field({"budget", &o.budget, "Time that a plan may take, with its reports", Dimension::time, positive()});
+  v.field({"evaluations", &o.evaluations,
+           "Evaluations that a plan may take below the reporting fidelity, instead of a time: the result can "
+           "then be had again; 0: `budget` counts",
+           Dimension::none, from(0, 1e7)});
   v.field({"finalists", &o.finalists, "Best schedules that are evaluated at the reporting fidelity",
            Dimension::none, from(1, 1e4)});
   v.field({"shortest_stroke", &o.shortest_stroke, "Of a gripper after the preshape", Dimension::time,

@@ -73,6 +73,8 @@ void visit_grippers(FieldVisitor& v, RigOptions& g, Case& c) {
            "Largest force of an actuator, in each driven direction", Dimension::force, positive()});
   v.field({"max_velocity", &g.max_velocity, "Largest velocity of a joint, vertical or in-plane",
            Dimension::velocity, positive()});
+  v.field({"max_acceleration", &g.max_acceleration, "Largest acceleration of a joint, vertical or in-plane",
+           Dimension::acceleration, positive(), false, "absent: no limit"});
   v.field({"blend_time", &g.blend_time, "Time over which a change of velocity is spread", Dimension::time,
            from(0)});
   v.field({"release_time", &g.release_time,

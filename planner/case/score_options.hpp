@@ -10,12 +10,15 @@ struct ScoreOptions {
   double target_boundary_offset = 0.002;  ///< reference of boundary offsets [m]
   double locking_angle_deg = 35;          ///< shear above it is penalised [deg]
   double strain_limit = 0.02;             ///< fibre strain above it is penalised [-]
+  /// Of joints behind their commands before they touch; a schedule above it is no candidate [m].
+  double lag_tolerance = 0.010;
   double weight_max_gap = 1;
   double weight_rms_gap = 1;
   double weight_wrinkled_area = 1;  ///< reference: 1 % of the ply's area
   double weight_max_boundary_offset = 1;
   double weight_rms_boundary_offset = 1;
   double weight_shear = 1;     ///< per degree above the locking angle
+  double weight_lag = 1;       ///< per mm of lag above the tolerance
   double weight_duration = 0;  ///< per second
 };
 

@@ -14,7 +14,7 @@
 #include "planner/cli/cli.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/drape/result_fields.hpp"
-#include "planner/drape/strategy.hpp"
+#include "planner/schedule/strategy.hpp"
 
 namespace drapeplan {
 namespace {

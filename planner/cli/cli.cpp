@@ -7,7 +7,7 @@
 
 #include "planner/base/json_text.hpp"
 #include "planner/base/text.hpp"
-#include "planner/cli/streams.hpp"
+#include "planner/cli/process.hpp"
 
 namespace drapeplan {
 namespace {

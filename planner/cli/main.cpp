@@ -8,7 +8,7 @@
 
 #include "planner/base/spelling.hpp"
 #include "planner/cli/cli.hpp"
-#include "planner/cli/streams.hpp"
+#include "planner/cli/process.hpp"
 
 namespace drapeplan {
 namespace {

@@ -1,14 +1,17 @@
 // plan: the main job, for one or many case files.
 #include <fmt/format.h>
 
+#include <charconv>
 #include <chrono>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "mapping/error.hpp"
+#include "planner/base/quantity.hpp"
 #include "planner/base/text.hpp"
 #include "planner/cli/cli.hpp"
-#include "planner/cli/streams.hpp"
+#include "planner/cli/process.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/report/run_files.hpp"
 #include "planner/search/plan.hpp"
@@ -22,6 +25,7 @@ struct PlanVerbOptions {
   CommonOptions common;
   std::vector<std::string> files;
   bool resume = false;
+  std::string budget;  ///< a time or a number of evaluations; empty: the case's
 };
 
 /// A line on stderr every few seconds: where the search is, how good, how long still.
@@ -33,7 +37,8 @@ class ProgressLine {
     if (progress.stage == stage_ && !last && now - shown_ < std::chrono::seconds(kSeconds)) return;
     shown_ = now;
     stage_ = progress.stage;
-    std::cerr << fmt::format("  {:4}/{}  {:<8} best {:8.3f}", progress.done, progress.planned, progress.stage,
+    const std::string planned = progress.planned > 0 ? fmt::format("/{}", progress.planned) : "";
+    std::cerr << fmt::format("  {:4}{}  {:<8} best {:8.3f}", progress.done, planned, progress.stage,
                              progress.best);
     if (std::isfinite(progress.seconds_left))
       std::cerr << fmt::format("   about {:.0f} s left", progress.seconds_left);
@@ -102,6 +107,20 @@ std::string design_text(const PlanResult& result) {
   return text;
 }
 
+/// The front of gap, boundary offset and duration, of all that was evaluated at the reporting fidelity.
+json candidates_json(const StagedResult& search) {
+  json list = json::array();
+  for (const Candidate* candidate : unbeaten(search.finalists)) {
+    const Score& score = candidate->outcome.score;
+    list.push_back({{"candidate", candidate->name},
+                    {"max_gap", score.max_gap},
+                    {"max_boundary_offset", score.max_boundary_offset},
+                    {"duration", score.duration},
+                    {"objective", score.objective}});
+  }
+  return list;
+}
+
 json plan_json(const DrapeProblem& problem, const PlanResult& result) {
   const StagedResult& search = result.search;
   json reach{{"floor_max", finite(problem.reach().floor_max)},
@@ -111,6 +130,7 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
              {"meaning", explain_reach(problem.reach_problem(), problem.reach())}};
   json best{{"candidate", search.best.name}};
   add_scores(result.best.score, result.best.other, best);
+  best["fidelity"] = search.best_fidelity;
   if (result.best.score.valid) best["schedule"] = "schedule.json";
   if (result.design) best["design"] = design_json(result);
   return {{"case", problem.definition().name},
@@ -127,6 +147,8 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
            {{"uniform", drape_json(result.uniform)},
             {"wave", drape_json(result.wave)},
             {"best", drape_json(result.best)}}},
+          {"unbeaten", candidates_json(search)},
+          {"interrupted", search.interrupted},
           {"beats_baselines", search.beats_baselines},
           {"message", search.message},
           {"evaluations", search.evaluations},
@@ -139,6 +161,7 @@ struct PlannedCase {
   json result;
   std::string text;    ///< for people
   bool valid = false;  ///< at least the best drape could be simulated
+  bool interrupted = false;
 };
 
 /// What was found before the search begins.
@@ -165,14 +188,19 @@ std::string result_text(const DrapeProblem& problem, const PlanResult& result,
 PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFolder& out) {
   const bool talk = !options.common.quiet;
   const DrapeProblem problem(std::move(definition));
-  for (const std::string& fidelity : plan_fidelities(problem.definition()))
+  std::vector<std::string> fidelities = plan_ladder(problem.definition());
+  fidelities.emplace_back(kReport);
+  for (const std::string& fidelity : fidelities)
     static_cast<void>(problem.model(fidelity));  // what cannot be built is found before anything is written
   if (talk) print_start(problem);
   print_warnings(map_warnings(problem.definition(), problem.mapping()), options.common);
   ProgressLine line;
+  const InterruptGuard guard;
   const PlanOptions planning{
-      options.resume, options.common.threads,
-      [&](const std::filesystem::path& earlier) { print_set_aside(earlier, options.common); }};
+      .resume = options.resume,
+      .threads = options.common.threads,
+      .stop = [] { return InterruptGuard::interrupted(); },
+      .moved = [&](const std::filesystem::path& earlier) { print_set_aside(earlier, options.common); }};
   const PlanResult result = plan(problem, out, planning, [&](const Progress& progress) {
     if (talk) line(progress);
   });
@@ -181,7 +209,10 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
     write_plan(out.path(), planned, result);  // no schedule for a robot from failed runs
   json document = plan_json(planned, result);
   write_text(out.path() / "result.json", document_text(document));
-  return {std::move(document), result_text(planned, result, out.path()), result.best.score.valid};
+  return {.result = std::move(document),
+          .text = result_text(planned, result, out.path()),
+          .valid = result.best.score.valid,
+          .interrupted = result.search.interrupted};
 }
 
 /// A run directory per case: --out itself for a single case, else a folder below it by the case file's name.
@@ -218,7 +249,7 @@ ExitCode plan_and_add(Case definition, const std::string& file, const PlanVerbOp
     results.push_back(std::move(planned.result));
     if (!options.common.json && !options.common.quiet) print(planned.text, true);
     if (!planned.valid) std::cerr << file << ": no drape could be simulated to its end\n";
-    return planned.valid ? kDone : kNotFinished;
+    return planned.valid && !planned.interrupted ? kDone : kNotFinished;
   } catch (...) {
     Failure failure = failure_of(std::current_exception());
     if (failure.code == kBug) throw;
@@ -231,6 +262,26 @@ ExitCode plan_and_add(Case definition, const std::string& file, const PlanVerbOp
   }
 }
 
+/// @throws WrongInput if the text is neither a time nor a number of evaluations.
+void set_budget(const std::string& text, OptimiseOptions& optimise) {
+  if (text.empty()) return;
+  const char* end = text.data() + text.size();
+  int count = 0;
+  if (const auto [last, fault] = std::from_chars(text.data(), end, count);
+      last == end && fault == std::errc()) {
+    if (count < 1) throw WrongInput("--budget: a number of evaluations is 1 or more");
+    optimise.evaluations = count;
+    return;
+  }
+  std::string fault;
+  const std::optional<double> time = parse_quantity(text, Dimension::time, fault);
+  if (!time || !(*time > 0))
+    throw WrongInput("--budget: a time, as \"10 min\", or a number of evaluations; " +
+                     (time ? "it must be > 0" : fault));
+  optimise.budget = *time;
+  optimise.evaluations = 0;
+}
+
 int plan_all(const PlanVerbOptions& options) {
   std::vector<Case> cases;
   std::vector<InputError> errors;
@@ -239,6 +290,7 @@ int plan_all(const PlanVerbOptions& options) {
   for (const std::string& file : options.files)
     cases.push_back(load_case(file, options.common, {"grippers", "material"}, errors));
   if (!errors.empty()) throw InputErrors(errors);
+  for (Case& definition : cases) set_budget(options.budget, definition.optimise);
   std::vector<OutputFolder> out;
   for (const std::filesystem::path& folder : folders)
     out.emplace_back(folder, "plan", options.resume ? kEvaluations : "");
@@ -261,6 +313,9 @@ void add_plan(CLI::App& program, Action& action) {
       "the main job: finds a better draping sequence and compares it with the uniform and the wave baseline",
       [](CLI::App& verb, PlanVerbOptions& options) {
         verb.add_option("CASE", options.files, "case files")->required();
+        verb.add_option("--budget", options.budget,
+                        "time that each plan may take, as \"10 min\", or its number of evaluations "
+                        "(default: the case's optimise.budget)");
         verb.add_flag("--resume", options.resume, "continue from the evaluations in the run directory");
       },
       plan_all);

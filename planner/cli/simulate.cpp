@@ -13,9 +13,10 @@
 #include "planner/cli/cli.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/drape/result_fields.hpp"
-#include "planner/drape/schedule_file.hpp"
 #include "planner/report/run_files.hpp"
 #include "planner/report/vtu.hpp"
+#include "planner/schedule/check.hpp"
+#include "planner/schedule/file.hpp"
 
 namespace drapeplan {
 namespace {
@@ -205,12 +206,10 @@ Schedule schedule_of(const DrapeProblem& problem, const std::string& name) {
   const RigOptions& rig = *problem.definition().grippers;
   ScheduleReading reading = read_schedule(name, rig);
   if (!reading.errors.empty()) throw InputErrors(reading.errors);
-  constexpr double kRounding = 1e-3;  // knots are rounded: a path at the limit may exceed it by as much
-  const double fastest = reading.value.largest_velocity();
-  if (fastest > rig.max_velocity * (1 + kRounding)) {
-    throw WrongInput(fmt::format("{}: moves at up to {:g} m/s, more than grippers.max_velocity ({:g} m/s)",
-                                 name, fastest, rig.max_velocity));
-  }
+  std::string refusals;
+  for (const std::string& refusal : rig_refusals(reading.value, rig))
+    refusals += fmt::format("{}{}: {}", refusals.empty() ? "" : "\n", name, refusal);
+  if (!refusals.empty()) throw WrongInput(refusals);
   let_go_pressed(problem.definition().press, reading.value);
   return std::move(reading.value);
 }

@@ -252,7 +252,12 @@ Score DrapeProblem::score_at(const Model& model, const RunResult& run, const Sna
   if (run.summary.largest_penetration > case_.material.thickness)
     return failed_score(fmt::format("the ply came {:f} mm inside the mold: more than its thickness",
                                     1e3 * run.summary.largest_penetration));
-  const RunExtremes extremes{seen.actuator_force, seen.fibre_strain, seen.fibre_compression, duration};
+  const RunExtremes extremes{.max_actuator_force = seen.actuator_force,
+                             .max_lag = seen.lag,
+                             .saturated = seen.saturated * model.scene().options.time_scaling,
+                             .max_fibre_strain = seen.fibre_strain,
+                             .max_fibre_compression = seen.fibre_compression,
+                             .duration = duration};
   return score_drape(model.scene().mesh, ply, *case_.mold, map_.boundary, case_.material.thickness,
                      case_.score, extremes);
 }

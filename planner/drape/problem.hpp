@@ -13,9 +13,9 @@
 #include "planner/case/case.hpp"
 #include "planner/drape/map_result.hpp"
 #include "planner/drape/score.hpp"
-#include "planner/drape/strategy.hpp"
 #include "planner/reach/floor.hpp"
 #include "planner/reach/reach.hpp"
+#include "planner/schedule/strategy.hpp"
 
 namespace drapeplan {
 

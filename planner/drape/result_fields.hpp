@@ -68,12 +68,13 @@ inline nlohmann::json score_json(const Score& score) {
   }
   out["objective"] = finite(score.objective);
   out["valid"] = score.valid;
+  out["followed"] = score.followed;
   if (!score.valid) out["reason"] = score.reason;
   return out;
 }
 
-/// The score of the ply as laid; where it was pressed, also that after pressing. Which one the objective takes, the
-/// case says.
+/// The score of the ply as laid; where it was pressed, also that after pressing. Which one the objective
+/// takes, the case says.
 inline void add_scores(const Score& score, const std::optional<OtherScore>& other, nlohmann::json& out) {
   const bool takes_after = other && other->before;
   out["score"] = score_json(takes_after ? other->score : score);

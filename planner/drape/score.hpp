@@ -28,6 +28,10 @@ struct Score {
   double max_fibre_compression = 0;
   /// Over the run [N].
   double max_actuator_force = 0;
+  /// Over the run: how far a joint was behind its command while its pad touched nothing [m].
+  double max_lag = 0;
+  /// How long some actuator was at its limit of force, on the schedule's clock [s].
+  double saturated = 0;
   /// Of the schedule [s].
   double duration = 0;
   /// Weighted sum, lower is better.
@@ -35,6 +39,9 @@ struct Score {
   /// false: the run failed, `reason` says why, `objective` is the penalty.
   bool valid = false;
   std::string reason;
+  /// The rig did what it was told: the largest lag is within the case's tolerance. If not, the schedule is no
+  /// candidate.
+  bool followed = true;
 };
 
 /// Of a ply that is pressed there are two scores: the one that the objective does not take.
@@ -83,6 +90,8 @@ inline constexpr std::array kScoreParts{
     ScorePart{"max_fibre_compression", &Score::max_fibre_compression, "largest fibre compression", "%", 1e2,
               3},
     ScorePart{"max_actuator_force", &Score::max_actuator_force, "largest actuator force", "N", 1, 1},
+    ScorePart{"max_lag", &Score::max_lag, "largest lag", "mm", 1e3, 1, true},
+    ScorePart{"saturated", &Score::saturated, "actuators at their limit", "s", 1, 1},
     ScorePart{"duration", &Score::duration, "duration", "s", 1, 1},
     ScorePart{"objective", &Score::objective, "objective", "", 1, 2, true, "objective"},
 };

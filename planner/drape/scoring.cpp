@@ -26,6 +26,7 @@ constexpr double kTautStrain = 1e-5;  // [-]
 constexpr double kEdgeSample = 0.0005;  // [m]
 /// Reference of the wrinkled area: this share of the ply's area.
 constexpr double kWrinkledShare = 0.01;  // [-]
+constexpr double kLagUnit = 0.001;       // [m], of the weight of lag above its tolerance
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 double gap(const Mold& mold, const Eigen::Vector3d& place, double thickness) {
@@ -174,6 +175,7 @@ std::optional<std::string> not_finite(const Snapshot& end, const RunExtremes& ru
     return name("weft strain of element", k);
   }
   if (!std::isfinite(run.max_actuator_force)) return "actuator force";
+  if (!std::isfinite(run.max_lag + run.saturated)) return "lag of a joint";
   if (!std::isfinite(run.max_fibre_strain + run.max_fibre_compression)) return "fibre strain of the run";
   if (!std::isfinite(run.duration)) return "duration";
   return std::nullopt;
@@ -260,6 +262,9 @@ Score score_drape(const Mesh& mesh, const Snapshot& end, const Mold& mold,
   score.max_fibre_compression =
       std::max({run.max_fibre_compression, largest(end.warp_strain, -1), largest(end.weft_strain, -1)});
   score.max_actuator_force = run.max_actuator_force;
+  score.max_lag = run.max_lag;
+  score.saturated = run.saturated;
+  score.followed = run.max_lag <= options.lag_tolerance;
   score.duration = run.duration;
   const std::vector<double> areas = nodal_areas(mesh);
   score.objective = objective(score, options, std::accumulate(areas.begin(), areas.end(), 0.0));
@@ -288,6 +293,7 @@ double objective(const Score& score, const ScoreOptions& options, double ply_are
       options.weight_rms_boundary_offset * score.rms_boundary_offset / options.target_boundary_offset +
       options.weight_shear * excess(score.max_shear_deg, options.locking_angle_deg) +
       options.weight_shear * excess(score.max_fibre_strain, options.strain_limit) / options.strain_limit +
+      options.weight_lag * excess(score.max_lag, options.lag_tolerance) / kLagUnit +
       options.weight_duration * score.duration;
   return std::min(sum, kLargestValidObjective);
 }

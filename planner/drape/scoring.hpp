@@ -21,6 +21,8 @@ inline constexpr double kLargestValidObjective = 1e4;
 /// What scoring needs to know of the whole run, not only of its end.
 struct RunExtremes {
   double max_actuator_force = 0;     ///< largest |force| of a gripper [N]
+  double max_lag = 0;                ///< of a joint from its command while its pad touches nothing [m]
+  double saturated = 0;              ///< how long some actuator was at its limit, schedule's clock [s]
   double max_fibre_strain = 0;       ///< largest tension; the end of the run is looked at in any case [-]
   double max_fibre_compression = 0;  ///< the same in compression, magnitude [-]
   double duration = 0;               ///< of the schedule [s]

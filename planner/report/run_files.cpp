@@ -14,11 +14,11 @@
 #include "planner/base/text.hpp"
 #include "planner/case/file.hpp"
 #include "planner/drape/result_fields.hpp"
-#include "planner/drape/schedule_file.hpp"
 #include "planner/drape/scoring.hpp"
 #include "planner/report/charts.hpp"
 #include "planner/report/page.hpp"
 #include "planner/report/vtu.hpp"
+#include "planner/schedule/file.hpp"
 
 namespace drapeplan {
 namespace {
@@ -39,7 +39,9 @@ std::vector<ReportRow> rows_of(const DrapeProblem& problem, const PlanResult& re
   for (const auto& [name, drape] : {std::pair<const char*, const Drape&>{"uniform", result.uniform},
                                     {"wave", result.wave},
                                     {"optimised", result.best}}) {
-    rows.push_back({.name = name, .score = drape.score});
+    const bool coarse = &drape == &result.best && result.search.best_fidelity != kReport;
+    rows.push_back({.name = coarse ? fmt::format("{} (at {})", name, result.search.best_fidelity) : name,
+                    .score = drape.score});
     if (!drape.other) continue;
     rows.push_back({.name = fmt::format("{}, {}", name, drape.other->label()),
                     .score = drape.other->score,
@@ -66,8 +68,9 @@ Chart history_chart(const StagedResult& search) {
   return chart;
 }
 
-/// Gap against boundary offset: what no schedule can go below, and what drapes have.
-Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows) {
+/// Gap against boundary offset: what no schedule can go below, what drapes have, and which of all candidates
+/// at the reporting fidelity no other one beats in gap, offset and duration.
+Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows, const StagedResult& search) {
   Chart chart{.title = "Gap and boundary offset",
               .x_label = "largest boundary offset [mm]",
               .y_label = "largest gap [mm]",
@@ -86,6 +89,12 @@ Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows) {
     chart.series.push_back({.name = row.name,
                             .points = {{1e3 * row.score.max_boundary_offset, 1e3 * row.score.max_gap}},
                             .dots = true});
+  }
+  for (const Candidate* candidate : unbeaten(search.finalists)) {
+    const Score& score = candidate->outcome.score;
+    chart.series.push_back({.name = fmt::format("front: {}, {:.1f} s", candidate->name, score.duration),
+                            .points = {{1e3 * score.max_boundary_offset, 1e3 * score.max_gap}},
+                            .rings = true});
   }
   return chart;
 }
@@ -223,7 +232,7 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
     report.figures.push_back(
         {"Largest gap against largest boundary offset: drapes, and the floor below which no "
          "schedule comes while fibres stretch by 1 % at most",
-         line_chart(floor_chart(front, report.rows))});
+         line_chart(floor_chart(front, report.rows, search))});
   }
   report.facts = {{"evaluations", fmt::to_string(search.evaluations)},
                   {"failed evaluations", fmt::to_string(search.failed_evaluations)},
@@ -256,15 +265,15 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
   write_schedule(folder / "schedule_uniform.json", search.uniform.schedule, rig);
   write_schedule(folder / "schedule_wave.json", search.wave.schedule, rig);
 
-  const Mesh& mesh = problem.model(kReport).scene().mesh;
-  const std::array<std::pair<const char*, const Drape*>, 3> drapes{
-      {{"uniform", &result.uniform}, {"wave", &result.wave}, {"optimised", &result.best}}};
   std::vector<DrapePanel> panels;
-  for (const auto& [name, drape] : drapes) {
-    write_frames(folder, name, mesh, drape->frames, &*problem.definition().mold,
-                 problem.definition().material.thickness);
-    panels.push_back(drape_panel(problem, *drape, kReport, name));
-  }
+  const auto add = [&](const char* name, const Drape& drape, const std::string& fidelity) {
+    write_frames(folder, name, problem.model(fidelity).scene().mesh, drape.frames,
+                 &*problem.definition().mold, problem.definition().material.thickness);
+    panels.push_back(drape_panel(problem, drape, fidelity, name));
+  };
+  add("uniform", result.uniform, kReport);
+  add("wave", result.wave, kReport);
+  add("optimised", result.best, search.best_fidelity);
   write_mold_vtu(folder / "mold.vtu", *problem.definition().mold);
 
   const std::string drape = drape_picture(panels, problem.definition().mold->extent());

@@ -8,6 +8,7 @@
 #include "mapping/error.hpp"
 #include "planner/base/parallel.hpp"
 #include "planner/drape/scoring.hpp"
+#include "planner/search/interrupted.hpp"
 
 namespace drapeplan {
 namespace {
@@ -50,8 +51,9 @@ Outcome scored(const std::function<Outcome()>& run) {
   }
 }
 
-BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int threads, std::uint64_t design) {
-  return [evaluate = std::move(evaluate), &log, threads, design](
+BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int threads, std::uint64_t design,
+                                  std::function<bool()> stop) {
+  return [evaluate = std::move(evaluate), &log, threads, design, stop = std::move(stop)](
              const std::vector<Schedule>& schedules, const std::string& fidelity, const std::string& stage) {
     const std::vector<size_t> first = first_occurrences(schedules);
     std::vector<Outcome> outcomes(schedules.size());
@@ -60,6 +62,7 @@ BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int thr
     std::mutex order;
     const auto one = [&](int i) {
       const auto k = size_t(i);
+      if (stop && stop()) throw Interrupted();
       if (first[k] == k) {
         const auto run = [&] { return scored([&] { return evaluate(schedules[k], fidelity); }); };
         outcomes[k] = log.evaluate_once(candidate_hash(design, schedules[k]), fidelity, run);

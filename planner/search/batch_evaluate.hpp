@@ -31,7 +31,9 @@ using BatchEvaluate = std::function<std::vector<Outcome>(
 /// overtook. Batches of concurrent callers interleave in the order of their completion.
 /// @param log  outlives the returned function.
 /// @param design  of the rig that schedules are played on, see candidate_hash.
+/// @param stop  asked before each run; may be empty. Once it says true, what runs is finished and logged, and
+/// the batch throws Interrupted.
 BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int threads = 0,
-                                  std::uint64_t design = 0);
+                                  std::uint64_t design = 0, std::function<bool()> stop = {});
 
 }  // namespace drapeplan

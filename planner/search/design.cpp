@@ -11,8 +11,10 @@
 #include "planner/base/parallel.hpp"
 #include "planner/case/design.hpp"
 #include "planner/case/file.hpp"
+#include "planner/method/cmaes.hpp"
+#include "planner/schedule/families.hpp"
 #include "planner/search/batch_evaluate.hpp"
-#include "planner/search/cmaes.hpp"
+#include "planner/search/interrupted.hpp"
 
 namespace drapeplan {
 namespace {
@@ -132,7 +134,8 @@ std::uint64_t design_hash(const std::vector<std::string>& overrides) {
 }
 
 DesignResult search_design(const DrapeProblem& base, const std::string& fidelity, EvaluationLog& log,
-                           int threads, const std::function<void(int, double)>& progress) {
+                           int threads, const std::function<void(int, double)>& progress,
+                           const std::function<bool()>& stop) {
   const JointSpace space(base);
   const OptimiseOptions& optimise = base.definition().optimise;
   CmaEsOptions options;
@@ -146,20 +149,20 @@ DesignResult search_design(const DrapeProblem& base, const std::string& fidelity
              std::max(optimise.design_evaluations, search.population()) &&
          search.stop_reason().empty()) {
     const Eigen::MatrixXd x = search.ask();
-    std::vector<Outcome> outcomes(size_t(x.cols()));
-    parallel_for(
-        int(x.cols()),
-        [&](int k) {
-          const Eigen::VectorXd place = x.col(k);
-          outcomes[size_t(k)] =
-              log.evaluate_once(space.hash(place), fidelity, [&] { return space.drape(place, fidelity); });
-        },
-        threads);
+    std::vector<std::optional<Outcome>> outcomes(size_t(x.cols()));
+    const auto drape = [&](int k) {
+      if (stop && stop()) return;
+      const Eigen::VectorXd place = x.col(k);
+      outcomes[size_t(k)] =
+          log.evaluate_once(space.hash(place), fidelity, [&] { return space.drape(place, fidelity); });
+    };
+    parallel_for(int(x.cols()), drape, threads);
     Eigen::VectorXd values(x.cols());
     for (Eigen::Index k = 0; k < x.cols(); ++k) {
-      const Outcome& outcome = outcomes[size_t(k)];
-      if (!outcome.cached) log.write(space.hash(x.col(k)), fidelity, "design", outcome);
-      values[k] = value_of(outcome);
+      const std::optional<Outcome>& outcome = outcomes[size_t(k)];
+      if (!outcome) throw Interrupted();
+      if (!outcome->cached) log.write(space.hash(x.col(k)), fidelity, "design", *outcome);
+      values[k] = value_of(*outcome);
       if (values[k] < lowest) lowest = values[k], best = x.col(k);
     }
     search.tell(values);

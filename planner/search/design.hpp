@@ -36,9 +36,12 @@ std::uint64_t design_hash(const std::vector<std::string>& overrides);
 /// candidate is a case of its own: mapped anew, with a model of its own. One that is no good case, or cannot
 /// be mapped, is a failed candidate. The result depends on the case only, not on threads.
 /// @param progress  called after each generation with the number of candidates so far and the best objective.
-/// @throws NotFinished if no candidate could be evaluated.
+/// @param stop  asked before each candidate; may be empty. Once it says true, what runs is finished and
+/// logged.
+/// @throws NotFinished if no candidate could be evaluated, Interrupted if it was stopped.
 DesignResult search_design(const DrapeProblem& base, const std::string& fidelity, EvaluationLog& log,
-                           int threads, const std::function<void(int, double)>& progress = {});
+                           int threads, const std::function<void(int, double)>& progress = {},
+                           const std::function<bool()>& stop = {});
 
 /// Fills `design.changes`: for each variable, the schedule on the changed rig with this variable as it was in
 /// `base`. Heights of the schedule follow the targets.

@@ -1,8 +1,11 @@
 #include "planner/search/evaluation_log.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -30,6 +33,11 @@ double number_or(const json& value, double otherwise) {
   return value.is_null() ? otherwise : value.get<double>();
 }
 
+/// "2026-11-29T15:37:00Z"
+std::string utc_now() {
+  return fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
+}
+
 json to_json(const Evaluation& e) {
   json line{{"number", e.number},
             {"stage", e.stage},
@@ -38,6 +46,9 @@ json to_json(const Evaluation& e) {
             {"objective", finite(e.outcome.score.objective)},
             {"best_so_far", finite(e.best_so_far)},
             {"wall_seconds", finite(e.outcome.wall_seconds)},
+            {"time", utc_now()},
+            {"version", DRAPEPLAN_VERSION},
+            {"elapsed_seconds", finite(e.outcome.elapsed)},
             {"summary", summary_json(e.outcome.summary)}};
   line["score"] = score_json(e.outcome.score);  // the one that the objective takes
   if (const auto& other = e.outcome.other) line[other->key()] = score_json(other->score);
@@ -50,6 +61,7 @@ Score score_from(const json& j) {
   Score score;
   for (const ScorePart& part : kScoreParts) score.*part.value = number_or(j.at(part.key), kLost);
   score.valid = j.at("valid").get<bool>();
+  score.followed = j.at("followed").get<bool>();
   if (!score.valid) score.reason = j.at("reason").get<std::string>();
   return score;
 }
@@ -62,6 +74,7 @@ Evaluation from_json(const json& j) {
   e.schedule_hash = from_hex(j.at("schedule_hash"));
   e.best_so_far = number_or(j.at("best_so_far"), kInfinity);
   e.outcome.wall_seconds = number_or(j.at("wall_seconds"), 0);
+  e.outcome.elapsed = number_or(j.at("elapsed_seconds"), 0);
   const json& summary = j.at("summary");
   e.outcome.score = score_from(j.at("score"));
   for (const bool before : {true, false}) {
@@ -200,6 +213,7 @@ EvaluationLog::EvaluationLog(const std::string& path, std::uint64_t case_hash) :
     whole = read_evaluations(path, case_hash, [this](Evaluation&& one) { remember(one); });
     std::filesystem::resize_file(path, whole, error);
   }
+  before_ = latest_;
   if (!error) file_.open(path, std::ios::binary | std::ios::app);
   if (whole == 0) file_ << header_line(case_hash) << std::flush;
   if (error || !file_) throw NotFinished(path + ": cannot be written");
@@ -209,6 +223,7 @@ void EvaluationLog::remember(const Evaluation& evaluation) {
   known_[{evaluation.schedule_hash, evaluation.fidelity}] = evaluation.outcome;
   best_[evaluation.fidelity] = evaluation.best_so_far;
   last_number_ = evaluation.number;
+  latest_ = std::max(latest_, evaluation.outcome.elapsed);
   ++size_;
 }
 
@@ -236,6 +251,7 @@ Outcome EvaluationLog::evaluate_once(std::uint64_t candidate, const std::string&
   };
   try {
     outcome = run();
+    outcome->elapsed = elapsed();
   } catch (...) {
     end();  // whoever waits for it runs it himself
     throw;
@@ -255,6 +271,10 @@ void EvaluationLog::write(std::uint64_t candidate, const std::string& fidelity, 
     if (!file_) throw NotFinished(path_ + ": cannot be written (disk full?)");
   }
   remember(evaluation);
+}
+
+double EvaluationLog::elapsed() const {
+  return before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
 }
 
 int EvaluationLog::size() const {

@@ -1,6 +1,7 @@
 // The log of all evaluations: history, cache and checkpoint in one file, one JSON line each.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <fstream>
@@ -25,6 +26,7 @@ struct Outcome {
   std::optional<OtherScore> other;  ///< where the ply was pressed
   RunSummary summary;
   double wall_seconds = 0;  ///< [s]
+  double elapsed = 0;       ///< on the log's clock when it ended [s]
   bool cached = false;      ///< served without a run
 };
 
@@ -69,6 +71,10 @@ class EvaluationLog {
   void write(std::uint64_t candidate, const std::string& fidelity, const std::string& stage,
              const Outcome& outcome);
 
+  /// The log's clock: how long its plan has been searching, earlier runs included, to the last evaluation
+  /// that they logged [s].
+  [[nodiscard]] double elapsed() const;
+
   /// How many evaluations it has, those read from the file included.
   [[nodiscard]] int size() const;
 
@@ -82,6 +88,9 @@ class EvaluationLog {
   std::set<Key> running_;
   std::map<std::string, double> best_;  // per fidelity
   int last_number_ = 0, size_ = 0;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double before_ = 0;  ///< what its clock had shown when the file was opened [s]
+  double latest_ = 0;  ///< of all evaluations [s]
   std::string path_;
   std::ofstream file_;
 };

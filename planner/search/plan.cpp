@@ -8,10 +8,12 @@
 #include <system_error>
 
 #include "fem/core/hash.hpp"
+#include "mapping/error.hpp"
 #include "planner/base/json_text.hpp"
 #include "planner/base/parallel.hpp"
 #include "planner/base/text.hpp"
 #include "planner/case/file.hpp"
+#include "planner/schedule/check.hpp"
 
 namespace drapeplan {
 namespace {
@@ -97,11 +99,13 @@ std::uint64_t case_hash(const Case& definition) {
   return hash.value();
 }
 
-std::array<std::string, 3> plan_fidelities(const Case& definition) {
-  const auto fidelity_or_report = [&definition](const char* name) {
-    return definition.fidelities.count(name) > 0 ? std::string(name) : std::string(kReport);
-  };
-  return {fidelity_or_report("screen"), fidelity_or_report("search"), kReport};
+std::vector<std::string> plan_ladder(const Case& definition) {
+  std::vector<std::string> ladder;
+  for (const char* name : {"screen", "search"}) {
+    if (definition.fidelities.contains(name)) ladder.emplace_back(name);
+  }
+  if (ladder.empty()) ladder.emplace_back(kReport);
+  return ladder;
 }
 
 namespace {
@@ -112,6 +116,8 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
                       PlanResult& result) {
   ReportedDrapes reported(problem.frame());
   const Evaluate evaluate = [&](const Schedule& schedule, const std::string& fidelity) {
+    if (const auto refusals = rig_refusals(schedule, *problem.definition().grippers); !refusals.empty())
+      throw WrongInput(refusals.front());
     const bool report = fidelity == kReport;
     Drape drape = problem.run(schedule, fidelity, report ? kFrames : 0);
     Outcome outcome = outcome_of(drape);
@@ -122,12 +128,16 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
   staged.optimise = problem.definition().optimise;
   staged.threads = options.threads;
   if (result.design) staged.wave = result.design->wave;
-  const auto fidelities = plan_fidelities(problem.definition());
-  staged.wave_fidelity = fidelities[0];
-  staged.gripper_fidelity = fidelities[1];
-  result.search = staged_search(problem.frame(), staged,
-                                make_batch_evaluate(evaluate, log, options.threads, design), progress);
+  staged.ladder = plan_ladder(problem.definition());
+  const BatchEvaluate batch = make_batch_evaluate(evaluate, log, options.threads, design, options.stop);
+  result.search = staged_search(problem.frame(), staged, batch, progress);
   const StagedResult& search = result.search;
+  if (search.best_fidelity != kReport) {  // interrupted: a run at its own fidelity is quick
+    result.best = problem.run(search.best.schedule, search.best_fidelity, kFrames);
+    result.uniform = reported.take(problem, search.uniform.schedule);
+    result.wave = reported.take(problem, search.wave.schedule);
+    return;
+  }
   const std::array<std::pair<const Candidate*, Drape*>, 3> wanted{
       {{&search.uniform, &result.uniform}, {&search.wave, &result.wave}, {&search.best, &result.best}}};
   parallel_for(
@@ -153,8 +163,8 @@ PlanResult plan(const DrapeProblem& problem, OutputFolder& out, const PlanOption
                 .best = best,
                 .seconds_left = std::numeric_limits<double>::quiet_NaN()});
     };
-    result.design =
-        search_design(problem, plan_fidelities(problem.definition())[0], log, options.threads, show);
+    result.design = search_design(problem, plan_ladder(problem.definition()).front(), log, options.threads,
+                                  show, options.stop);
   }
   const std::uint64_t design = result.design ? design_hash(result.design->overrides) : 0;
   search_schedules(planned_problem(problem, result), design, log, options, progress, result);

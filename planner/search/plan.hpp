@@ -1,11 +1,11 @@
 // The main job: map, check reach, evaluate the baselines, optimise, re-evaluate at the reporting fidelity.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "planner/base/output_folder.hpp"
 #include "planner/drape/problem.hpp"
@@ -20,6 +20,8 @@ inline constexpr const char* kEvaluations = "evaluations.jsonl";
 struct PlanOptions {
   bool resume = false;  ///< continue from the evaluations that the run folder holds
   int threads = 0;      ///< 0: one per core
+  /// Asked before each run; once it says true, the search ends with what it has. May be empty.
+  std::function<bool()> stop = {};
   /// Called with the folder that the results of an earlier run were moved to, if there were some.
   std::function<void(const std::filesystem::path&)> moved = {};
 };
@@ -33,8 +35,8 @@ struct PlanResult {
   double wall_seconds = 0;
 };
 
-/// Fidelities that a plan of the case runs: of the wave's search, of the grippers' search, of reports.
-std::array<std::string, 3> plan_fidelities(const Case& definition);
+/// Fidelities that a plan of the case searches, cheapest first: `screen` and `search`, where it has them.
+std::vector<std::string> plan_ladder(const Case& definition);
 
 /// The case that the drapes of a plan are of: with its design, if there is one.
 inline const DrapeProblem& planned_problem(const DrapeProblem& given, const PlanResult& result) {

@@ -3,28 +3,38 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
-#include <mutex>
 #include <set>
 #include <utility>
 
+#include "planner/base/statistics.hpp"
 #include "planner/drape/problem.hpp"
-#include "planner/search/cmaes.hpp"
-#include "planner/search/nlopt.hpp"
+#include "planner/method/cmaes.hpp"
+#include "planner/method/nlopt.hpp"
+#include "planner/schedule/families.hpp"
+#include "planner/search/interrupted.hpp"
 
 namespace drapeplan {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Schedules whose knots all agree within it count as the same finalist [s].
-constexpr double kDifferentTime = 0.05;
-/// NLopt searches side by side in the wave stage, COBYLA and SBPLX in turn.
-constexpr int kLocalSearches = 4;
-/// Of the gripper stage, in units of the box's edge: small, so that what the wave stage found is kept.
+/// Schedules whose knots all agree within both count as the same finalist.
+constexpr double kDifferentTime = 0.05;     // [s]
+constexpr double kDifferentHeight = 0.001;  // [m]
+/// NLopt searches side by side, from as many of the screened waves.
+constexpr int kLocalSearches = 2;
+/// First step of CMA-ES in units of the box's edge: small, so that what the local search has found is kept.
 constexpr double kGripperSigma = 0.05;
+/// Shares of the budget at which parts of the search end: the local search over smooth strokes, CMA-ES at the
+/// cheapest fidelity (in so many equal parts, with a check after each), and at the finest.
+constexpr double kSmoothEnd = 0.15, kScreenEnd = 0.6, kGripperEnd = 1;
+constexpr int kScreenParts = 3;
+/// Spearman's rank correlation of one generation at two fidelities below which the cheaper one is left.
+constexpr double kTrustedCorrelation = 0.7;
 
 /// A candidate before it has a fidelity: strokes and where they come from. One is kept per evaluation, so it
 /// is small: the schedule is made from the strokes where it is needed.
@@ -32,116 +42,86 @@ struct Trial {
   std::string name;
   Strokes strokes;
   double objective = kInfinity;  ///< infinite: failed
+  bool followed = true;
 };
-
-Trial make_trial(std::string name, Strokes strokes) {
-  return {std::move(name), std::move(strokes), kInfinity};
-}
 
 bool better(const Trial& a, const Trial& b) {
   return a.objective < b.objective;
 }
 
-/// Counts evaluations, estimates the time left and calls the user. The only part that looks at a clock.
-class Meter {
- public:
-  Meter(const StagedOptions& options, const std::function<void(const Progress&)>& progress)
-      : progress_(progress) {
-    const OptimiseOptions& o = options.optimise;
-    planned_[options.wave_fidelity] += o.wave_evaluations;
-    planned_[options.gripper_fidelity] += o.gripper_evaluations;
-    planned_[kReport] += o.finalists + 3;  // the baselines and the centre
-  }
-
-  void count(const std::string& stage, const std::string& fidelity, const std::vector<Outcome>& outcomes) {
-    const std::scoped_lock lock(mutex_);
-    if (!best_.contains(fidelity)) best_[fidelity] = kInfinity;
-    for (const Outcome& outcome : outcomes) {
-      best_[fidelity] = std::min(best_[fidelity], value_of(outcome));
-      ++done_[fidelity];
-      if (outcome.cached) continue;
-      ++runs_[fidelity];
-      seconds_[fidelity] += outcome.wall_seconds;
-    }
-    if (progress_) progress_(report(stage, fidelity));
-  }
-
- private:
-  Progress report(const std::string& stage, const std::string& fidelity) {
-    Progress p;
-    p.stage = stage;
-    p.best = best_[fidelity];
-    double work = 0, dearest = 0, spent = 0;
-    for (const auto& [name, seconds] : seconds_) {
-      spent += seconds;
-      if (runs_[name] > 0) dearest = std::max(dearest, seconds / runs_[name]);
-    }
-    for (const auto& [name, planned] : planned_) {
-      p.done += done_[name];
-      p.planned += std::max(planned, done_[name]);
-      const double mean = runs_[name] > 0 ? seconds_[name] / runs_[name] : dearest;
-      work += mean * std::max(planned - done_[name], 0);
-    }
-    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-    p.seconds_left =
-        spent > 0 ? work * std::min(elapsed / spent, 1.0) : std::numeric_limits<double>::quiet_NaN();
-    return p;
-  }
-
-  std::function<void(const Progress&)> progress_;
-  std::mutex mutex_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  std::map<std::string, int> planned_, done_, runs_;  // per fidelity
-  std::map<std::string, double> best_, seconds_;
-};
+/// Of candidates that are compared in the end: first those whose commands were followed.
+bool ranks_before(const Outcome& a, const Outcome& b) {
+  if (a.score.followed != b.score.followed) return a.score.followed;
+  return value_of(a) < value_of(b);
+}
 
 class StagedSearch {
  public:
   StagedSearch(const SequenceFrame& frame, const StagedOptions& options, const BatchEvaluate& evaluate,
                const std::function<void(const Progress&)>& progress)
-      : frame_(frame), options_(options), evaluate_(evaluate), meter_(options, progress) {}
+      : frame_(frame), options_(options), evaluate_(evaluate), budget_(options.optimise, progress) {}
 
   StagedResult run() {
-    search_waves();
-    search_grippers();
-    compare_finalists();
+    compare({{"uniform", uniform_strokes(frame_)}, {"wave", wave_strokes(frame_)}}, "baseline");
+    result_.uniform = result_.finalists[0];
+    result_.wave = result_.finalists[1];
+    budget_.reserve(options_.optimise.finalists + kCentres);
+    try {
+      search_waves();
+      search_smooth();
+      search_grippers();
+      compare(pick_finalists(), "report");
+      conclude();
+    } catch (const Interrupted&) {
+      conclude_early();
+    }
     return std::move(result_);
   }
 
  private:
+  using Decode = std::function<Strokes(const Eigen::VectorXd&)>;
+  static constexpr int kCentres = 1;  ///< of the search distribution, which no lucky value chose
+
   void search_waves();
+  void search_smooth();
+  void climb(Method& search, const Decode& decode, size_t rung,
+             const std::function<void(double, size_t)>& search_until);
   void search_grippers();
-  void compare_finalists();
+  bool advance(Method& method, const Decode& decode, const std::vector<std::string>& fidelities,
+               const std::string& stage);
+  void compare(std::vector<Trial> trials, const std::string& stage);
 
   Schedule schedule_of(const Trial& trial) const { return to_schedule(frame_, trial.strokes); }
   std::vector<Outcome> evaluate(std::vector<Trial>& trials, const std::string& fidelity,
-                                const std::string& stage);
+                                const std::string& stage, bool report = false);
   void record(const Trial& trial, const std::string& fidelity, const std::string& stage);
   std::vector<Trial> screen_waves();
-  std::vector<NloptStart> local_starts(const std::vector<Trial>& screened, int budget) const;
   std::vector<Trial> pick_finalists() const;
+  const Trial* best_at(const std::string& fidelity) const;
   void conclude();
+  void conclude_early();
 
   const SequenceFrame& frame_;
   const StagedOptions& options_;
   const BatchEvaluate& evaluate_;
-  Meter meter_;
-  std::vector<Trial> trials_;            // candidates at the fidelity of the stage that was last
-  std::vector<Eigen::VectorXd> starts_;  // wave coordinates of the screened waves
-  std::vector<Trial> centre_;            // the last mean of CMA-ES, or empty
+  Budget budget_;
+  std::map<std::string, std::vector<Trial>> trials_;  // per fidelity, in the order of evaluation
+  std::vector<Trial> centres_;                        // last means of CMA-ES
+  double correlation_ = 1;                            // of the last generation at two fidelities
   std::map<std::string, double> best_;
   std::set<std::pair<std::uint64_t, std::string>> seen_;
   StagedResult result_;
 };
 
 std::vector<Outcome> StagedSearch::evaluate(std::vector<Trial>& trials, const std::string& fidelity,
-                                            const std::string& stage) {
+                                            const std::string& stage, bool report) {
   std::vector<Schedule> schedules;
   for (const Trial& trial : trials) schedules.push_back(schedule_of(trial));
   std::vector<Outcome> outcomes = evaluate_(schedules, fidelity, stage);
-  meter_.count(stage, fidelity, outcomes);
+  budget_.count(stage, fidelity, outcomes, report);
   for (size_t k = 0; k < trials.size(); ++k) {
     trials[k].objective = value_of(outcomes[k]);
+    trials[k].followed = outcomes[k].score.followed;
     record(trials[k], fidelity, stage);
   }
   return outcomes;
@@ -163,32 +143,28 @@ void StagedSearch::record(const Trial& trial, const std::string& fidelity, const
     result_.failed_evaluations += entry.valid ? 0 : 1;
   }
   result_.history.push_back(std::move(entry));
+  trials_[fidelity].push_back(trial);
 }
 
-/// Baselines, then waves from the middle, the corners and the mid-sides, as many as the budget holds. The
-/// first two coordinates in `starts_` stand for the baselines.
+/// Baselines, then waves from the middle, the corners and the mid-sides, as many as an evaluation budget
+/// holds.
 std::vector<Trial> StagedSearch::screen_waves() {
   const WaveFamily family(frame_);
   const WaveParameters base = baseline_wave(frame_);
-  WaveParameters flat = base;
-  flat.delay = 0;
-  flat.duration = frame_.options.uniform_duration;
-  std::vector<Trial> trials{make_trial("uniform", uniform_strokes(frame_)),
-                            make_trial("wave", wave_strokes(frame_))};
-  starts_ = {family.encode(flat), family.encode(base)};
-  if (options_.wave.size() > 0) {
-    starts_.push_back(options_.wave);
-    trials.push_back(make_trial(fmt::format("wave {}", trials.size() + 1), family.decode(options_.wave)));
-  }
+  std::vector<Trial> trials{{"uniform", uniform_strokes(frame_)}, {"wave", wave_strokes(frame_)}};
+  const auto add_member = [&](const Eigen::VectorXd& x) {
+    const int most = options_.optimise.evaluations;
+    if (most > 0 && int(trials.size()) >= most) return;
+    trials.push_back({fmt::format("wave {}", trials.size() + 1), family.decode(x)});
+  };
+  if (options_.wave.size() > 0) add_member(options_.wave);
   const Eigen::Vector2d corner =
       0.5 * frame_.rig.spacing * Eigen::Vector2d(frame_.rig.columns - 1, frame_.rig.rows - 1);
   const auto add = [&](double u, double v, double delay_factor) {
-    if (int(trials.size()) >= options_.optimise.wave_evaluations) return;
     WaveParameters wave = base;
     wave.start = Eigen::Vector2d(u * corner[0], v * corner[1]);
     wave.delay *= delay_factor;
-    starts_.push_back(family.encode(wave));
-    trials.push_back(make_trial(fmt::format("wave {}", trials.size() + 1), family.decode(starts_.back())));
+    add_member(family.encode(wave));
   };
   for (const double v : {-1.0, 1.0}) {
     for (const double u : {-1.0, 1.0}) add(u, v, 1);
@@ -199,83 +175,85 @@ std::vector<Trial> StagedSearch::screen_waves() {
   return trials;
 }
 
-/// Starts for NLopt: the best screened waves, the budget in equal parts, the algorithms in turn.
-std::vector<NloptStart> StagedSearch::local_starts(const std::vector<Trial>& screened, int budget) const {
-  std::vector<size_t> order(screened.size());
-  for (size_t k = 0; k < order.size(); ++k) order[k] = k;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](size_t a, size_t b) { return better(screened[a], screened[b]); });
-  constexpr int kLeastBudget = 2 * (WaveFamily::kDimension + 1);  // a first simplex and as many steps
-  const int most = std::max(1, budget / kLeastBudget);
-  const int count = std::min({kLocalSearches, most, int(order.size())});
-  std::vector<NloptStart> starts;
-  for (int k = 0; k < count; ++k) {
-    starts.push_back({starts_[order[size_t(k)]], k % 2 == 0 ? LocalSearch::cobyla : LocalSearch::sbplx,
-                      (budget + k) / count});
-  }
-  return starts;
+void StagedSearch::search_waves() {
+  std::vector<Trial> screened = screen_waves();
+  evaluate(screened, options_.ladder.front(), "wave");
 }
 
-void StagedSearch::search_waves() {
-  trials_ = screen_waves();
-  evaluate(trials_, options_.wave_fidelity, "wave");
-  const int budget = options_.optimise.wave_evaluations - int(trials_.size());
-  if (budget <= 0) return;
-  const WaveFamily family(frame_);
-  const auto objective = [&](const Eigen::VectorXd& x) {
-    const std::vector<Outcome> outcome =
-        evaluate_({to_schedule(frame_, family.decode(x))}, options_.wave_fidelity, "wave");
-    meter_.count("wave", options_.wave_fidelity, outcome);
-    return value_of(outcome.front());
-  };
-  NloptOptions nlopt;
-  nlopt.seed = options_.optimise.seed;
-  nlopt.threads = options_.threads;
-  const std::vector<NloptRun> runs = nlopt_search(objective, local_starts(trials_, budget), nlopt);
-  size_t longest = 0;
-  for (const NloptRun& run : runs) longest = std::max(longest, run.trials.size());
-  for (size_t turn = 0; turn < longest; ++turn) {
-    for (const NloptRun& run : runs) {
-      if (turn >= run.trials.size()) continue;
-      Trial trial = make_trial(fmt::format("wave {}", trials_.size() + 1), family.decode(run.trials[turn].x));
-      trial.objective = run.trials[turn].value;
-      record(trial, options_.wave_fidelity, "wave");
-      trials_.push_back(std::move(trial));
-    }
+const Trial* StagedSearch::best_at(const std::string& fidelity) const {
+  const auto list = trials_.find(fidelity);
+  if (list == trials_.end() || list->second.empty()) return nullptr;
+  return &*std::min_element(list->second.begin(), list->second.end(), better);
+}
+
+/// One batch of a method at one fidelity or several, the last of which is told; false if it has none left.
+bool StagedSearch::advance(Method& method, const Decode& decode, const std::vector<std::string>& fidelities,
+                           const std::string& stage) {
+  if (!method.stop_reason().empty()) return false;
+  const Eigen::MatrixXd x = method.ask();
+  if (x.cols() == 0) return false;
+  std::vector<Trial> trials;
+  for (Eigen::Index k = 0; k < x.cols(); ++k) {
+    const size_t number = trials_[fidelities.back()].size() + size_t(k) + 1;
+    trials.push_back({fmt::format("{} {}", stage, number), decode(x.col(k))});
+  }
+  std::vector<double> before, values;
+  for (const std::string& fidelity : fidelities) {
+    evaluate(trials, fidelity, stage);
+    before = std::move(values);
+    values.clear();
+    for (const Trial& trial : trials) values.push_back(trial.objective);
+  }
+  if (!before.empty()) correlation_ = spearman(before, values);
+  method.tell(Eigen::Map<const Eigen::VectorXd>(values.data(), x.cols()));
+  return true;
+}
+
+/// COBYLA from the best waves: at the start, a hundred evaluations of it bring what CMA-ES finds with four
+/// hundred.
+void StagedSearch::search_smooth() {
+  const std::string& fidelity = options_.ladder.front();
+  const StrokeFamily family(frame_, {});
+  std::vector<Trial> waves = trials_[fidelity];
+  std::stable_sort(waves.begin(), waves.end(), better);
+  const int budget = budget_.affords(kSmoothEnd - budget_.spent(), fidelity);
+  const int count = std::min(kLocalSearches, int(waves.size()));
+  std::vector<NloptStart> starts;
+  for (int k = 0; k < count; ++k) {
+    starts.push_back({.x = family.encode(waves[size_t(k)].strokes), .evaluations = (budget + k) / count});
+  }
+  NloptSearches search(starts, options_.optimise.seed);
+  const Decode decode = [&](const Eigen::VectorXd& x) { return family.decode(x); };
+  while (budget_.spent() < kSmoothEnd && advance(search, decode, {fidelity}, "smooth")) {
   }
 }
 
 void StagedSearch::search_grippers() {
-  const int budget = options_.optimise.gripper_evaluations;
-  if (budget <= 0) return;
-  const Trial base = *std::min_element(trials_.begin(), trials_.end(), better);
-  if (options_.gripper_fidelity != options_.wave_fidelity) {  // objectives of two fidelities do not compare
-    std::vector<Trial> again{base};
-    evaluate(again, options_.gripper_fidelity, "gripper");
-    trials_ = std::move(again);
-  }
-  const GripperFamily family(frame_, base.strokes);
-  constexpr int kLeastGenerations = 4, kLeastPopulation = 4;
-  const int usual = 4 + int(std::floor(3 * std::log(double(family.dimension()))));
-  CmaEsOptions cma;
-  cma.sigma0 = kGripperSigma;
-  cma.seed = options_.optimise.seed;
-  cma.population = std::max(kLeastPopulation, std::min(usual, budget / kLeastGenerations));
-  CmaEs search(family.encode_base(), cma);
-  for (int done = 0; done + search.population() <= budget && search.stop_reason().empty();
-       done += search.population()) {
-    const Eigen::MatrixXd x = search.ask();
-    std::vector<Trial> generation;
-    for (Eigen::Index k = 0; k < x.cols(); ++k) {
-      generation.push_back(make_trial(fmt::format("gripper {}", done + k + 1), family.decode(x.col(k))));
+  const StrokeFamily family(frame_, {.start = Spread::each, .height = Spread::each});
+  CmaEs search(family.encode(best_at(options_.ladder.front())->strokes),
+               {.sigma0 = kGripperSigma, .seed = options_.optimise.seed});
+  const Decode decode = [&](const Eigen::VectorXd& x) { return family.decode(x); };
+  const auto search_until = [&](double end, size_t rung) {
+    while (budget_.spent() < end && advance(search, decode, {options_.ladder[rung]}, "gripper")) {
     }
-    evaluate(generation, options_.gripper_fidelity, "gripper");
-    Eigen::VectorXd values(x.cols());
-    for (Eigen::Index k = 0; k < x.cols(); ++k) values[k] = generation[size_t(k)].objective;
-    search.tell(values);
-    trials_.insert(trials_.end(), generation.begin(), generation.end());
+  };
+  const size_t finest = options_.ladder.size() - 1;
+  for (size_t rung = 0; rung < finest; ++rung) climb(search, decode, rung, search_until);
+  search_until(kGripperEnd, finest);
+  if (search.generation() > 0) centres_.push_back({"gripper centre", family.decode(search.mean())});
+}
+
+/// Searches at one fidelity until its ranks are no longer those of the next one, or its share is spent. Where
+/// they are compared, one generation is evaluated at both, and the finer values are told.
+void StagedSearch::climb(Method& search, const Decode& decode, size_t rung,
+                         const std::function<void(double, size_t)>& search_until) {
+  const std::string &here = options_.ladder[rung], &next = options_.ladder[rung + 1];
+  const double begin = budget_.spent();
+  for (int part = 1; part <= kScreenParts; ++part) {
+    search_until(begin + (kScreenEnd - begin) * part / kScreenParts, rung);
+    if (budget_.spent() >= kScreenEnd || !advance(search, decode, {here, next}, "gripper")) return;
+    if (correlation_ < kTrustedCorrelation) return;
   }
-  centre_ = {make_trial("gripper centre", family.decode(search.mean()))};
 }
 
 bool nearly_equal(const Schedule& a, const Schedule& b) {
@@ -283,57 +261,54 @@ bool nearly_equal(const Schedule& a, const Schedule& b) {
     if (a.paths[g].size() != b.paths[g].size()) return false;
     for (size_t k = 0; k < a.paths[g].size(); ++k) {
       if (std::abs(a.paths[g][k].time - b.paths[g][k].time) > kDifferentTime) return false;
+      if (std::abs(a.paths[g][k].z - b.paths[g][k].z) > kDifferentHeight) return false;
     }
   }
   return true;
 }
 
-/// The baselines; the best few that differ; the centre of the search distribution, which no lucky value
-/// chose.
+/// The best few that differ from each other and from the baselines, of the finest fidelity that has some;
+/// and the centres of the search distributions.
 std::vector<Trial> StagedSearch::pick_finalists() const {
   std::vector<Trial> finalists;
-  std::vector<Schedule> schedules;
-  const auto add = [&](const Trial& trial) {
-    finalists.push_back(trial);
-    schedules.push_back(schedule_of(trial));
-  };
+  std::vector<Schedule> schedules{result_.uniform.schedule, result_.wave.schedule};
   const auto add_if_new = [&](const Trial& trial) {
-    const Schedule schedule = schedule_of(trial);
-    if (std::none_of(schedules.begin(), schedules.end(),
-                     [&](const Schedule& other) { return nearly_equal(other, schedule); }))
-      add(trial);
+    Schedule schedule = schedule_of(trial);
+    if (std::any_of(schedules.begin(), schedules.end(),
+                    [&](const Schedule& other) { return nearly_equal(other, schedule); }))
+      return;
+    finalists.push_back(trial);
+    schedules.push_back(std::move(schedule));
   };
-  add(make_trial("uniform", uniform_strokes(frame_)));
-  add(make_trial("wave", wave_strokes(frame_)));
-  std::vector<const Trial*> sorted;
-  for (const Trial& trial : trials_) sorted.push_back(&trial);
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const Trial* a, const Trial* b) { return better(*a, *b); });
-  const size_t wanted = finalists.size() + size_t(std::max(options_.optimise.finalists, 0));
-  for (const Trial* trial : sorted) {
-    if (finalists.size() >= wanted || !std::isfinite(trial->objective)) break;
-    add_if_new(*trial);
+  const auto wanted = size_t(std::max(options_.optimise.finalists, 0));
+  for (auto fidelity = options_.ladder.rbegin(); fidelity != options_.ladder.rend(); ++fidelity) {
+    const auto list = trials_.find(*fidelity);
+    if (list == trials_.end()) continue;
+    std::vector<const Trial*> sorted;
+    for (const Trial& trial : list->second) sorted.push_back(&trial);
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Trial* a, const Trial* b) {
+      return a->followed != b->followed ? a->followed : better(*a, *b);
+    });
+    for (const Trial* trial : sorted) {
+      if (finalists.size() >= wanted || !std::isfinite(trial->objective)) break;
+      add_if_new(*trial);
+    }
   }
-  for (const Trial& trial : centre_) add_if_new(trial);
+  for (const Trial& trial : centres_) add_if_new(trial);
   return finalists;
 }
 
-void StagedSearch::compare_finalists() {
-  std::vector<Trial> finalists = pick_finalists();
-  const std::vector<Outcome> outcomes = evaluate(finalists, kReport, "report");
-  for (size_t k = 0; k < finalists.size(); ++k) {
-    result_.finalists.push_back({finalists[k].name, schedule_of(finalists[k]), outcomes[k]});
-  }
-  result_.uniform = result_.finalists[0];
-  result_.wave = result_.finalists[1];
-  std::stable_sort(
-      result_.finalists.begin(), result_.finalists.end(),
-      [](const Candidate& a, const Candidate& b) { return value_of(a.outcome) < value_of(b.outcome); });
-  result_.best = result_.finalists.front();
-  conclude();
+void StagedSearch::compare(std::vector<Trial> trials, const std::string& stage) {
+  const std::vector<Outcome> outcomes = evaluate(trials, kReport, stage, true);
+  for (size_t k = 0; k < trials.size(); ++k)
+    result_.finalists.push_back({trials[k].name, schedule_of(trials[k]), outcomes[k]});
 }
 
 void StagedSearch::conclude() {
+  std::stable_sort(result_.finalists.begin(), result_.finalists.end(),
+                   [](const Candidate& a, const Candidate& b) { return ranks_before(a.outcome, b.outcome); });
+  result_.best = result_.finalists.front();
+  result_.best_fidelity = kReport;
   const double baseline = std::min(value_of(result_.uniform.outcome), value_of(result_.wave.outcome));
   const double best = value_of(result_.best.outcome);
   result_.beats_baselines = best < baseline;
@@ -353,9 +328,46 @@ void StagedSearch::conclude() {
         "nothing found beats the baselines at the reporting fidelity: {} stays the best, objective {:.6g}",
         name, best);
   }
+  if (std::isfinite(best) && !result_.best.outcome.score.followed)
+    result_.message += "; no schedule was followed by the rig within the tolerance of lag";
+}
+
+void StagedSearch::conclude_early() {
+  conclude();
+  result_.interrupted = true;
+  for (auto fidelity = options_.ladder.rbegin(); fidelity != options_.ladder.rend(); ++fidelity) {
+    const Trial* best = best_at(*fidelity);
+    if (!best || !std::isfinite(best->objective)) continue;
+    result_.best = {best->name, schedule_of(*best), {}};
+    result_.best_fidelity = *fidelity;
+    break;
+  }
+  result_.message = fmt::format(
+      "interrupted after {} evaluations; the best so far is {}, at fidelity \"{}\"; --resume goes on",
+      result_.evaluations, result_.best.name, result_.best_fidelity);
 }
 
 }  // namespace
+
+std::vector<const Candidate*> unbeaten(const std::vector<Candidate>& candidates) {
+  const auto good = [](const Candidate& c) { return c.outcome.score.valid && c.outcome.score.followed; };
+  const auto figures = [](const Candidate& c) {
+    const Score& s = c.outcome.score;
+    return std::array{s.max_gap, s.max_boundary_offset, s.duration};
+  };
+  std::vector<const Candidate*> front;
+  for (const Candidate& one : candidates) {
+    const bool beaten = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
+      const auto a = figures(other), b = figures(one);
+      const bool as_good = a[0] <= b[0] && a[1] <= b[1] && a[2] <= b[2];
+      return good(other) && as_good && (a != b || &other < &one);
+    });
+    if (good(one) && !beaten) front.push_back(&one);
+  }
+  std::stable_sort(front.begin(), front.end(),
+                   [&](const Candidate* a, const Candidate* b) { return figures(*a) < figures(*b); });
+  return front;
+}
 
 StagedResult staged_search(const SequenceFrame& frame, const StagedOptions& options,
                            const BatchEvaluate& evaluate,

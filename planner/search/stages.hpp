@@ -1,4 +1,5 @@
-// The search for a better draping sequence, in stages: waves, then every gripper, then a fair comparison.
+// The search for a better draping sequence, in stages: waves, smooth strokes, every gripper, a fair
+// comparison.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,17 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "planner/drape/strategy.hpp"
+#include "planner/schedule/strategy.hpp"
 #include "planner/search/batch_evaluate.hpp"
+#include "planner/search/budget.hpp"
 
 namespace drapeplan {
 
 struct StagedOptions {
   OptimiseOptions optimise;
-  std::string wave_fidelity = "screen";
-  std::string gripper_fidelity = "screen";  ///< finalists are compared at kReport
-  Eigen::VectorXd wave = {};                ///< one more wave to start from, in coordinates; empty: none
-  int threads = 0;                          ///< 0: OpenMP's default; does not change the result
+  /// Fidelities that are searched, cheapest first; finalists are compared at kReport.
+  std::vector<std::string> ladder = {"screen"};
+  Eigen::VectorXd wave = {};  ///< one more wave to start from, in coordinates; empty: none
+  int threads = 0;            ///< 0: OpenMP's default; does not change the result
 };
 
 /// A schedule and what it is worth.
@@ -39,33 +41,38 @@ struct HistoryEntry {
 };
 
 struct StagedResult {
-  Candidate uniform, wave;           ///< the baselines, at the reporting fidelity
-  Candidate best;                    ///< the best at the reporting fidelity; a baseline if nothing beats them
+  Candidate uniform, wave;  ///< the baselines, at the reporting fidelity
+  /// The best at the reporting fidelity whose commands were followed; a baseline if nothing beats them. Of an
+  /// interrupted search the best at the finest fidelity so far.
+  Candidate best;
+  std::string best_fidelity;
   std::vector<Candidate> finalists;  ///< all that were re-evaluated, best first, baselines included
   bool beats_baselines = false;
+  bool interrupted = false;
   std::string message;  ///< the outcome in a sentence
   std::vector<HistoryEntry> history;
   int evaluations = 0;  ///< different (schedule, fidelity) pairs
   int failed_evaluations = 0;
 };
 
-struct Progress {
-  std::string stage;
-  int done = 0, planned = 0;  ///< evaluations; `planned` is an upper bound
-  double best = 0;            ///< lowest valid objective at the stage's fidelity; infinite if there is none
-  double seconds_left = 0;    ///< estimate from the mean run time per fidelity; NaN before the first run
-};
+/// Of candidates that were evaluated to their end and followed their commands: those that no other one beats,
+/// or equals, in largest gap, largest boundary offset and duration at once; by increasing gap.
+std::vector<const Candidate*> unbeaten(const std::vector<Candidate>& candidates);
 
-/// Minimises the objective over schedules in three stages.
-/// 1 wave     screens the baselines and up to nine waves, then NLopt from the best of them;
-/// 2 gripper  CMA-ES over the starts of all grippers' strokes and one factor on their durations, with a small
-///            first step, from the best of stage 1. On synthetic objectives, also one that asks for different
-///            durations, one common factor came closer with up to 750 evaluations than a duration for each;
-/// 3 report   the baselines, the best few different schedules and the centre of the last search distribution
-///            are evaluated at the reporting fidelity; the best there wins.
+/// Minimises the objective over schedules.
+/// 1 baseline  both are evaluated at the reporting fidelity: what is to be beaten, and what a report costs;
+/// 2 wave      screens up to nine waves at the cheapest fidelity (`ladder`);
+/// 3 smooth    NLopt's COBYLA over StrokeFamily with smooth starts and heights, from the best waves;
+/// 4 gripper   CMA-ES over a start and a height of each gripper, with a small first step, from the best of
+///             that. It climbs from the cheapest fidelity to the finest: when the ranks of a generation at
+///             both no longer agree, or when the share of the cheaper one is spent;
+/// 5 report    the best few different schedules and the centre of the last search distribution are evaluated
+///             at the reporting fidelity; the best there wins.
 /// The result depends on frame, options and evaluate only: not on threads, nor on what was served from a log.
-/// @param evaluate  safe to call concurrently.
+/// Where the budget is a time, it depends on the clock of the log, too.
+/// @param evaluate  safe to call concurrently. Once it throws Interrupted, the search ends with what it has.
 /// @param progress  called after each evaluation, one call at a time, from any thread; may be empty.
+/// @throws Interrupted before the baselines are known.
 StagedResult staged_search(const SequenceFrame& frame, const StagedOptions& options,
                            const BatchEvaluate& evaluate,
                            const std::function<void(const Progress&)>& progress = {});

@@ -20,7 +20,7 @@
 #include "planner/base/text.hpp"
 #include "planner/case/file.hpp"
 #include "planner/drape/problem.hpp"
-#include "planner/drape/strategy.hpp"
+#include "planner/schedule/families.hpp"
 
 namespace drapeplan {
 namespace {
@@ -170,19 +170,6 @@ double rms_difference(const std::vector<double>& a, const std::vector<double>& b
   return count > 0 ? std::sqrt(sum / count) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Point k of a sequence that fills [0, 1]^n evenly: multiples of powers of 1 / g, with g the root of
-/// g^(n + 1) = g + 1 (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
-Eigen::VectorXd even_point(int k, Eigen::Index dimension) {
-  double g = 2;
-  for (int round = 0; round < 60; ++round) g = std::pow(1 + g, 1.0 / double(dimension + 1));
-  Eigen::VectorXd x(dimension);
-  for (Eigen::Index d = 0; d < dimension; ++d) {
-    const double whole = 0.5 + k * std::pow(g, -double(d + 1));
-    x[d] = whole - std::floor(whole);
-  }
-  return x;
-}
-
 }  // namespace
 
 StudySubject::StudySubject(std::string file, std::vector<std::string> overrides, Settings at)
@@ -247,13 +234,13 @@ std::vector<Schedule> StudySubject::schedules(int count) const {
   const Strokes wave = wave_strokes(frame);
   std::vector<Schedule> result{to_schedule(frame, uniform_strokes(frame)), to_schedule(frame, wave)};
   const WaveFamily waves(frame);
-  const GripperFamily free(frame, wave);
-  constexpr double kReach = 0.5;  // of the box of starts, around the baseline wave
-  const Eigen::VectorXd middle = free.encode_base();
+  const StrokeFamily strokes(frame, {});
+  constexpr double kReach = 0.5;  // of the box of strokes, around the baseline wave
+  const Eigen::VectorXd middle = strokes.encode(wave);
   for (int k = 1; int(result.size()) < count; ++k) {
     result.push_back(to_schedule(frame, waves.decode(even_point(k, WaveFamily::kDimension))));
-    const Eigen::VectorXd spread = even_point(k, free.dimension()).array() - 0.5;
-    result.push_back(to_schedule(frame, free.decode(middle + kReach * spread)));
+    const Eigen::VectorXd spread = even_point(k, strokes.dimension()).array() - 0.5;
+    result.push_back(to_schedule(frame, strokes.decode(middle + kReach * spread)));
   }
   result.resize(std::min(result.size(), size_t(std::max(count, 0))));
   return result;

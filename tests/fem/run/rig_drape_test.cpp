@@ -43,6 +43,32 @@ TEST(RigDrape, KeepsPadsWithinTheirTiltLimitWhereActuatorsPressThemOntoAMoldStee
   EXPECT_GE(result.summary.energy.constraint, -1e-12);
 }
 
+/// In the air a joint hangs below its command by the weight that it carries over its actuator's stiffness. On
+/// the mold it stops short of a command that aims below: that is no lag, but the actuator may give all it
+/// has.
+TEST(RigDrape, TellsHowFarJointsAreBehindTheirCommandsUntilTheirPadsTouch) {
+  Scene scene = corner_drape();
+  scene.rig->actuator_stiffness = 100;
+  Schedule still = test::drop(scene);
+  for (auto& path : still.paths) path = {{0, path[0].z + 0.1}, {3, path[0].z + 0.1}};
+  const RunResult hanging = simulate(Model(scene), {.schedule = &still});
+  ASSERT_EQ(hanging.summary.status, RunStatus::done) << hanging.summary.message;
+  const double weight = 9.81 * scene.fabric.areal_density * 0.16 * 0.16;
+  const double lag = weight / 4 / scene.rig->actuator_stiffness;
+  EXPECT_GE(hanging.state.record.lag, 0.99 * lag);
+  EXPECT_LE(hanging.state.record.lag, 1.1 * lag);
+  EXPECT_EQ(hanging.state.record.saturated, 0);
+
+  scene.rig->actuator_stiffness = 1e4;
+  scene.rig->actuator_force_limit = 15;
+  const Schedule pressing = test::drop(scene, {.depth = 0.002});  // 20 N, if there were as much
+  const RunResult pressed = simulate(Model(scene), {.schedule = &pressing});
+  ASSERT_EQ(pressed.summary.status, RunStatus::done) << pressed.summary.message;
+  EXPECT_LE(pressed.state.record.lag, 0.001);
+  EXPECT_GE(pressed.state.record.saturated * scene.options.time_scaling, 1);
+  EXPECT_LE(pressed.state.record.saturated * scene.options.time_scaling, 2.5);
+}
+
 /// Interlinks that close, have play and give way, all at once.
 TEST(RigDrape, WithInterlinksOfEveryKindClosesItsBooksAndGoesOnWithTheSameBits) {
   Scene scene = test::middle_drape(0.24, 0.02);

@@ -90,7 +90,7 @@ expect 0 check "$latin" --json
 valid "$work/stdout"
 expect 0 map "$latin" --json --out "$work/map"
 valid "$work/stdout" "$work"/map/*.json
-small=(--set optimise.wave_evaluations=2 --set optimise.gripper_evaluations=2 --set optimise.finalists=1)
+small=(--set optimise.evaluations=4 --set optimise.finalists=1)
 expect 0 plan "$latin" --json "${small[@]}" --out "$work/plan"
 valid "$work/stdout" "$work"/plan/*.{json,svg,html}
 schedule=$(printf '%s/\xe9t\xe9 <\x02>.json' "$work")

@@ -8,8 +8,8 @@ source "$(dirname "$0")/kit.sh" "$(realpath "$1")" "$(realpath "$2")" "$3"
 cd "$work" || exit 1   # verbs without --out write below ./out
 
 # Coarse and short: what goes on although it should be refused is over soon.
-coarse=(--set 'fem.mesh_size=34 mm' --set 'fidelities={}' --set fem.time_scaling=30 --set optimise.wave_evaluations=2
-  --set optimise.gripper_evaluations=0 --set optimise.finalists=1)
+coarse=(--set 'fem.mesh_size=34 mm' --set 'fidelities={}' --set fem.time_scaling=30 --set optimise.evaluations=2
+  --set optimise.finalists=1)
 
 # denied CODE TEXT ARGUMENTS...: that exit code, TEXT on stderr, no bug, nothing on stdout; no output folder with 2.
 denied() {

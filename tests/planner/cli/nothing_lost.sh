@@ -4,7 +4,7 @@
 # Usage: nothing_lost.sh DRAPEPLAN SOURCE_DIR JSON_VALUE
 set -uo pipefail
 . "$(dirname "$0")/kit.sh"
-few=(--set optimise.wave_evaluations=1 --set optimise.gripper_evaluations=0 --set optimise.finalists=1
+few=(--set optimise.evaluations=1 --set optimise.finalists=1
   --set 'fem.mesh_size=40 mm' --set fem.time_scaling=30 --set 'fidelities={}')
 strip=(simulate "$source/cases/cantilever-150.json" --quiet --set 'duration=2 ms' --set 'fem.mesh_size=25 mm')
 says() {
@@ -17,7 +17,7 @@ all_files() { (cd "$1" && find . -type f ! -name run.lock -exec cksum {} + | sor
 
 # A second plan while the first one works: refused, and the first one ends as if alone.
 run=$work/run
-"$program" plan "$quick" --quiet --out "$run" "${few[@]}" --set optimise.wave_evaluations=200 &
+"$program" plan "$quick" --quiet --out "$run" "${few[@]}" --set optimise.evaluations=200 &
 first=$!
 for _ in $(seq 600); do [ -s "$run/evaluations.jsonl" ] && break; sleep 0.1; done
 expect 2 plan "$quick" --out "$run" "${few[@]}"

@@ -82,7 +82,7 @@ expect 2 plan "$quick" --resume --json --out "$work/two" --set 'friction.coeffic
 value "$work/stdout" /reason | grep -qF "belongs to another case" || fail "no reason in the document"
 
 # Several cases in one call: a folder each, one document. Small budgets: what counts is the number of cases.
-few=(--set optimise.wave_evaluations=1 --set optimise.gripper_evaluations=1 --set optimise.finalists=1)
+few=(--set optimise.evaluations=2 --set optimise.finalists=1)
 sed "s#\"materials/#\"$source/cases/materials/#" "$quick" >"$work/second.json"
 expect 0 plan "$quick" "$work/second.json" --json --out "$work/several" "${few[@]}"
 same "$(hash_of_best "$work/several/flexdraper-quick/result.json")" "$(hash_of_best "$work/several/second/result.json")" \

@@ -40,8 +40,8 @@ expect 2 study "$strip" "${short[@]}" --out "$work/study" --resume
 grep -q 'study.jsonl:1' "$work/stderr" || fail "the broken line is not named: $(head -c 300 "$work/stderr")"
 
 # A drape: ranks and the search of a run.
-coarse=(--set "fem.mesh_size=34 mm" --set "fidelities={}" --set fem.time_scaling=30 --set optimise.wave_evaluations=4
-  --set optimise.gripper_evaluations=4 --set optimise.finalists=1)
+coarse=(--set "fem.mesh_size=34 mm" --set "fidelities={}" --set fem.time_scaling=30 --set optimise.evaluations=8
+  --set optimise.finalists=1)
 expect 0 study "$quick" "${coarse[@]}" --part search --part noise --part reach --part mapping --schedules 4 --repeats 1 \
   --out "$work/drape" --json
 within "$work/stdout" /searches/0/best/0 0 1000

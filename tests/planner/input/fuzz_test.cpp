@@ -10,7 +10,7 @@
 
 #include "planner/base/json_text.hpp"
 #include "planner/case/file.hpp"
-#include "planner/drape/schedule_file.hpp"
+#include "planner/schedule/file.hpp"
 
 namespace drapeplan {
 namespace {

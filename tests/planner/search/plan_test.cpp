@@ -15,8 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Case quick_case(std::vector<std::string> overrides = {}) {
-  for (const char* budget :
-       {"optimise.wave_evaluations=2", "optimise.gripper_evaluations=0", "optimise.finalists=1"})
+  for (const char* budget : {"optimise.evaluations=2", "optimise.finalists=1"})
     overrides.emplace_back(budget);
   CaseReading reading = read_case(DRAPEPLAN_SOURCE_DIR "/cases/flexdraper-quick.json", overrides);
   EXPECT_TRUE(reading.errors.empty());
@@ -32,7 +31,7 @@ TEST(CaseHash, LeavesOutWordsAndBudgetsAndSeesAllElse) {
   const std::uint64_t hash = case_hash(quick_case());
   for (const char* words : {"name=another", "description=another", "grippers.source=a data sheet",
                             "material.source=another", "material.tension.source=another", "references=[]",
-                            "optimise.wave_evaluations=77", "optimise.seed=5"})
+                            "optimise.evaluations=77", "optimise.budget=7 min", "optimise.seed=5"})
     EXPECT_EQ(case_hash(quick_case({words})), hash) << words;
   for (const char* change :
        {"friction.coefficient=1.4", "grippers.joint_offset=2 mm", "fem.mesh_size=16 mm",
@@ -49,7 +48,10 @@ TEST(Plan, ResumesOnlyItsOwnCaseAndSetsAsideWhatIsNotResumed) {
     changes.insert(changes.end(), coarse.begin(), coarse.end());
     const DrapeProblem problem(quick_case(changes));
     OutputFolder out(run, "plan", kEvaluations);
-    return plan(problem, out, {resume, 1, [&](const fs::path& earlier) { moved.push_back(earlier); }}, {});
+    return plan(
+        problem, out,
+        {.resume = resume, .threads = 1, .moved = [&](const fs::path& earlier) { moved.push_back(earlier); }},
+        {});
   };
   const PlanResult first = run_plan({}, false);
   const std::string log = text_of(run / kEvaluations), resolved = text_of(run / "resolved.json");

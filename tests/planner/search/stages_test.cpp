@@ -2,14 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <thread>
 
 #include "mapping/error.hpp"
+#include "planner/drape/problem.hpp"
+#include "planner/search/interrupted.hpp"
 
 namespace drapeplan {
 namespace {
@@ -75,10 +80,9 @@ Evaluate synthetic(const SequenceFrame& frame, std::atomic<int>* runs = nullptr)
   };
 }
 
-StagedOptions options_of(int wave, int gripper) {
+StagedOptions options_of(int evaluations) {
   StagedOptions options;
-  options.optimise.wave_evaluations = wave;
-  options.optimise.gripper_evaluations = gripper;
+  options.optimise.evaluations = evaluations;
   return options;
 }
 
@@ -103,7 +107,7 @@ void expect_same(const StagedResult& a, const StagedResult& b) {
 TEST(StagedSearch, BeatsBothBaselinesAndComesNearTheOptimum) {
   const SequenceFrame frame = frame_of(5, 5);
   EvaluationLog log;
-  const StagedResult result = search(frame, options_of(120, 600), log);
+  const StagedResult result = search(frame, options_of(1200), log);
   EXPECT_TRUE(result.beats_baselines) << result.message;
   const double uniform = deviation(frame, result.uniform.schedule);
   const double wave = deviation(frame, result.wave.schedule);
@@ -116,17 +120,9 @@ TEST(StagedSearch, BeatsBothBaselinesAndComesNearTheOptimum) {
   EXPECT_GT(result.failed_evaluations, 0);
 }
 
-TEST(StagedSearch, TheStageOverGrippersGainsWhereNoWaveFits) {
-  const SequenceFrame frame = frame_of(5, 5);
-  EvaluationLog waves_only, both;
-  const double wave = deviation(frame, search(frame, options_of(120, 0), waves_only).best.schedule);
-  const double gripper = deviation(frame, search(frame, options_of(120, 600), both).best.schedule);
-  EXPECT_LE(gripper, 0.5 * wave);
-}
-
 TEST(StagedSearch, ResultDoesNotDependOnTheNumberOfThreads) {
   const SequenceFrame frame = frame_of(3, 3);
-  StagedOptions one = options_of(60, 80), two = options_of(60, 80);
+  StagedOptions one = options_of(140), two = options_of(140);
   one.threads = 1;
   two.threads = 2;
   EvaluationLog log_one, log_two;
@@ -138,7 +134,7 @@ TEST(StagedSearch, ResultDoesNotDependOnTheNumberOfThreads) {
 
 TEST(StagedSearch, ResumedFromATornLogGivesTheSameResultWithoutRunningAgain) {
   const SequenceFrame frame = frame_of(3, 3);
-  const StagedOptions options = options_of(60, 80);
+  const StagedOptions options = options_of(140);
   const std::string path = testing::TempDir() + "drapeplan_staged_resume.jsonl";
   std::filesystem::remove(path);
   std::atomic<int> first_runs = 0, resumed_runs = 0, third_runs = 0;
@@ -173,7 +169,7 @@ TEST(StagedSearch, SaysSoWhenNothingBeatsTheBaselines) {
     outcome.score.objective = 10 + lie * (schedule_hash(schedule) == favourite ? 0 : 1);
     return outcome;
   };
-  const StagedResult result = staged_search(frame, options_of(30, 30), make_batch_evaluate(evaluate, log));
+  const StagedResult result = staged_search(frame, options_of(60), make_batch_evaluate(evaluate, log));
   EXPECT_FALSE(result.beats_baselines);
   EXPECT_EQ(result.best.name, "uniform");
   EXPECT_NE(result.message.find("nothing found beats the baselines"), std::string::npos) << result.message;
@@ -183,19 +179,19 @@ TEST(StagedSearch, EndsWithAMessageWhenEverythingFails) {
   const SequenceFrame frame = frame_of(3, 3);
   EvaluationLog log;
   const Evaluate never = [](const Schedule&, const std::string&) -> Outcome { throw NotFinished("no"); };
-  const StagedResult result = staged_search(frame, options_of(30, 30), make_batch_evaluate(never, log));
+  const StagedResult result = staged_search(frame, options_of(60), make_batch_evaluate(never, log));
   EXPECT_FALSE(result.beats_baselines);
   EXPECT_EQ(result.failed_evaluations, result.evaluations);
   EXPECT_NE(result.message.find("no schedule could be evaluated"), std::string::npos) << result.message;
 }
 
-TEST(StagedSearch, SmallBudgetsAreKept) {
+TEST(StagedSearch, SmallBudgetsAreKeptToAGeneration) {
   const SequenceFrame frame = frame_of(3, 3);
-  for (const int budget : {0, 1, 5, 13}) {
+  for (const int budget : {1, 5, 13, 40}) {
     EvaluationLog log;
-    const StagedResult result = search(frame, options_of(budget, budget), log);
-    const int screened = std::max(budget, 2) + budget;  // the baselines are always screened
-    EXPECT_LE(int(result.history.size()), screened + 2 + 4 + 1);
+    const StagedResult result = search(frame, options_of(budget), log);
+    constexpr int kGeneration = 13, kReports = 2 + 4 + 2;
+    EXPECT_LE(int(result.history.size()), std::max(budget, 2) + 2 * kGeneration + kReports);
     EXPECT_TRUE(result.uniform.outcome.score.valid && result.wave.outcome.score.valid);
   }
 }
@@ -203,17 +199,110 @@ TEST(StagedSearch, SmallBudgetsAreKept) {
 TEST(StagedSearch, ProgressCountsUpToThePlan) {
   const SequenceFrame frame = frame_of(3, 3);
   EvaluationLog log;
-  const StagedOptions options = options_of(40, 40);
-  int last = 0, planned = 0;
-  const StagedResult result =
-      staged_search(frame, options, make_batch_evaluate(synthetic(frame), log), [&](const Progress& p) {
-        EXPECT_GT(p.done, last);
-        EXPECT_LE(p.done, p.planned);
-        last = p.done;
-        planned = p.planned;
-      });
+  int last = 0;
+  const StagedResult result = staged_search(frame, options_of(80), make_batch_evaluate(synthetic(frame), log),
+                                            [&](const Progress& p) {
+                                              EXPECT_GT(p.done, last);
+                                              EXPECT_LE(p.done, p.planned);
+                                              last = p.done;
+                                            });
   EXPECT_EQ(last, int(result.history.size()));
-  EXPECT_LE(planned, 40 + 40 + 4 + 3);
+}
+
+/// What is counted is the clock of the log: a search that is served takes the same turns.
+TEST(StagedSearch, WithABudgetOfTimeEndsInTimeAndIsServedAgainAsItWas) {
+  const SequenceFrame frame = frame_of(3, 3);
+  StagedOptions options;
+  options.optimise.budget = 2;
+  const Evaluate quick = synthetic(frame);
+  std::atomic<int> runs = 0;
+  const Evaluate slow = [&](const Schedule& schedule, const std::string& fidelity) {
+    ++runs;
+    std::this_thread::sleep_for(std::chrono::milliseconds(fidelity == kReport ? 100 : 5));
+    Outcome outcome = quick(schedule, fidelity);
+    outcome.wall_seconds = fidelity == kReport ? 0.1 : 0.005;
+    return outcome;
+  };
+  const std::string path = testing::TempDir() + "drapeplan_staged_time.jsonl";
+  std::filesystem::remove(path);
+  StagedResult first;
+  {
+    EvaluationLog log(path, 9);
+    first = staged_search(frame, options, make_batch_evaluate(slow, log));
+    EXPECT_LE(log.elapsed(), 4) << "twice the budget: the machine may be busy";
+  }
+  EXPECT_GE(first.evaluations, 30);
+  const int before = runs;
+  EvaluationLog log(path, 9);
+  expect_same(first, staged_search(frame, options, make_batch_evaluate(slow, log)));
+  EXPECT_EQ(runs, before);
+  std::filesystem::remove(path);
+}
+
+TEST(StagedSearch, InterruptedAtAnyMomentItKeepsTheBestAndGoesOnToTheSameEnd) {
+  const SequenceFrame frame = frame_of(3, 3);
+  const StagedOptions options = options_of(140);
+  EvaluationLog whole_log;
+  const StagedResult whole = search(frame, options, whole_log);
+  for (const int after : {3, 20, 90, 150}) {
+    EvaluationLog log;
+    std::atomic<int> runs = 0;
+    const auto stop = [&] { return runs >= after; };
+    const StagedResult part =
+        staged_search(frame, options, make_batch_evaluate(synthetic(frame, &runs), log, 2, 0, stop));
+    const bool ended = whole.evaluations <= after;
+    EXPECT_EQ(part.interrupted, !ended);
+    EXPECT_LE(runs, after + 1) << "what runs is finished";
+    EXPECT_EQ(log.size(), runs) << "and kept";
+    EXPECT_FALSE(part.best.schedule.paths.empty());
+    EXPECT_NE(part.message.find("--resume"), ended ? 0 : std::string::npos) << part.message;
+    expect_same(whole, search(frame, options, log));
+  }
+  EvaluationLog log;
+  const auto at_once = [] { return true; };
+  EXPECT_THROW(staged_search(frame, options, make_batch_evaluate(synthetic(frame), log, 1, 0, at_once)),
+               Interrupted);
+}
+
+TEST(StagedSearch, ASequenceThatTheRigDoesNotFollowIsNoCandidate) {
+  const SequenceFrame frame = frame_of(3, 3);
+  const std::uint64_t uniform = schedule_hash(to_schedule(frame, uniform_strokes(frame)));
+  const auto evaluate = [&](bool any) {
+    return [&frame, uniform, any, quick = synthetic(frame)](const Schedule& schedule,
+                                                            const std::string& fidelity) {
+      Outcome outcome = quick(schedule, fidelity);
+      outcome.score.followed = any && schedule_hash(schedule) == uniform;
+      return outcome;
+    };
+  };
+  EvaluationLog log, other;
+  const StagedResult followed =
+      staged_search(frame, options_of(60), make_batch_evaluate(evaluate(true), log));
+  EXPECT_EQ(followed.best.name, "uniform");
+  ASSERT_EQ(unbeaten(followed.finalists).size(), 1u);
+  const StagedResult none = staged_search(frame, options_of(60), make_batch_evaluate(evaluate(false), other));
+  EXPECT_NE(none.message.find("no schedule was followed"), std::string::npos) << none.message;
+  EXPECT_TRUE(unbeaten(none.finalists).empty());
+}
+
+TEST(Unbeaten, HoldsWhatNoOtherBeatsInGapOffsetAndDuration) {
+  const auto candidate = [](std::string name, double gap, double offset, double duration) {
+    Candidate c{.name = std::move(name), .schedule = {}, .outcome = {}};
+    c.outcome.score.valid = true;
+    c.outcome.score.max_gap = gap;
+    c.outcome.score.max_boundary_offset = offset;
+    c.outcome.score.duration = duration;
+    return c;
+  };
+  std::vector<Candidate> all{candidate("slow", 2, 2, 12),  candidate("quick", 5, 5, 4),
+                             candidate("worse", 3, 2, 12), candidate("same", 2, 2, 12),
+                             candidate("edge", 1, 9, 12),  candidate("not followed", 0, 0, 0),
+                             candidate("failed", 0, 0, 0)};
+  all[5].outcome.score.followed = false;
+  all[6].outcome.score.valid = false;
+  std::vector<std::string> names;
+  for (const Candidate* c : unbeaten(all)) names.push_back(c->name);
+  EXPECT_EQ(names, (std::vector<std::string>{"edge", "slow", "quick"}));
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "planner/method/method.hpp"
+
 namespace drapeplan {
 
 struct CmaEsOptions {
@@ -23,23 +25,24 @@ struct CmaEsOptions {
 /// face needs no penalty; values that are not finite are failures: they take no part in the recombination,
 /// and a generation of failures only halves sigma. Deterministic: own Box-Muller normal numbers from
 /// mt19937_64, ties in rank broken by index.
-class CmaEs {
+class CmaEs : public Method {
  public:
   /// @param x0  start, n values in [0, 1]; throws std::invalid_argument if empty or not finite, or sigma0 <=
   /// 0.
   CmaEs(const Eigen::VectorXd& x0, const CmaEsOptions& options);
 
   /// The next generation: n by population, every column in the box. Asking twice without telling draws anew.
-  const Eigen::MatrixXd& ask();
+  const Eigen::MatrixXd& ask() override;
   /// Values of the last generation, in its order; lower is better.
-  void tell(const Eigen::VectorXd& values);
+  void tell(const Eigen::VectorXd& values) override;
 
   [[nodiscard]] int dimension() const { return int(mean_.size()); }
   [[nodiscard]] int population() const { return population_; }
-  [[nodiscard]] Eigen::VectorXd mean() const;  ///< folded into the box
+  [[nodiscard]] int generation() const { return generation_; }  ///< how many were told
+  [[nodiscard]] Eigen::VectorXd mean() const;                   ///< folded into the box
   [[nodiscard]] double sigma() const { return sigma_; }
   /// Why there is no point in going on; empty if there is.
-  [[nodiscard]] std::string stop_reason() const;
+  [[nodiscard]] std::string stop_reason() const override;
 
  private:
   double normal();

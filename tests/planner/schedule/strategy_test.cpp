@@ -1,56 +1,18 @@
-#include "planner/drape/strategy.hpp"
+#include "planner/schedule/strategy.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+
+#include "tests/planner/schedule/sequences.hpp"
 
 namespace drapeplan {
 namespace {
 
-/// The article's 5x5 rig over a mold that rises along x and y.
-SequenceFrame article_frame() {
-  SequenceFrame frame;
-  frame.rig.columns = frame.rig.rows = 5;
-  frame.rig.spacing = 0.1;
-  for (int g = 0; g < 25; ++g) {
-    frame.target_z.push_back(0.05 + 0.1 * frame.rig.place(g)[0] + 0.05 * frame.rig.place(g)[1]);
-  }
-  return frame;
-}
-
-Eigen::VectorXd random_point(int n, unsigned seed) {
-  std::mt19937 bits(seed);
-  Eigen::VectorXd x(n);
-  for (int i = 0; i < n; ++i) x[i] = double(bits()) / double(std::mt19937::max());
-  return x;
-}
-
-double last_end(const Strokes& s) {
-  double last = 0;
-  for (size_t g = 0; g < s.start.size(); ++g) last = std::max(last, s.start[g] + s.duration[g]);
-  return last;
-}
-
-/// All promises of to_schedule about one schedule.
-void expect_sound(const SequenceFrame& frame, const Strokes& strokes) {
-  const Schedule schedule = to_schedule(frame, strokes);
-  ASSERT_EQ(schedule.paths.size(), frame.target_z.size());
-  for (size_t g = 0; g < schedule.paths.size(); ++g) {
-    const auto& path = schedule.paths[g];
-    EXPECT_EQ(path.front().time, 0);
-    EXPECT_LE(std::abs(path.front().z - frame.start_z()), 1e-6);
-    EXPECT_LE(std::abs(path.back().z - (frame.target_z[g] - frame.options.overtravel)), 1e-6);
-    EXPECT_EQ(path.back().time, schedule.paths[0].back().time);
-    for (size_t k = 1; k < path.size(); ++k) {
-      EXPECT_LT(path[k - 1].time, path[k].time);
-      EXPECT_LE(path[k].z, path[k - 1].z);
-    }
-  }
-  EXPECT_LE(schedule.largest_velocity(), frame.rig.max_velocity * (1 + 1e-3));
-  EXPECT_LE(*std::min_element(strokes.start.begin(), strokes.start.end()), 0);
-}
+using test::article_frame;
+using test::expect_sound;
+using test::last_end;
 
 TEST(Strategy, UniformIsOnePreshapeAndOneStrokeForAll) {
   const SequenceFrame frame = article_frame();
@@ -98,13 +60,13 @@ TEST(Strategy, ArticleWaveHasGroupsOfOneEightAndSixteen) {
   const Strokes strokes = wave_strokes(frame);
   expect_sound(frame, strokes);
   const auto at = [&](double t) {
-    return std::count_if(strokes.start.begin(), strokes.start.end(),
-                         [&](double s) { return std::abs(s - t) < 1e-12; });
+    return std::count_if(strokes.begin(), strokes.end(),
+                         [&](const Stroke& s) { return std::abs(s.start - t) < 1e-12; });
   };
   EXPECT_EQ(at(0.0), 1);
   EXPECT_EQ(at(0.8), 8);
   EXPECT_EQ(at(1.6), 16);
-  EXPECT_EQ(strokes.start[12], 0);
+  EXPECT_EQ(strokes[12].start, 0);
   EXPECT_LE(std::abs(last_end(strokes) - 5.1), 1e-12);
 }
 
@@ -118,8 +80,8 @@ TEST(Strategy, WaveFromACornerStartsThere) {
   SequenceFrame frame = article_frame();
   frame.options.wave_start = {-0.2, -0.2};
   const Strokes strokes = wave_strokes(frame);
-  EXPECT_EQ(strokes.start[0], 0);
-  EXPECT_LE(std::abs(strokes.start[24] - 4 * 0.8), 1e-12);
+  EXPECT_EQ(strokes[0].start, 0);
+  EXPECT_LE(std::abs(strokes[24].start - 4 * 0.8), 1e-12);
 }
 
 TEST(Strategy, FastStrokesAreStretchedToTheLargestVelocityAndItIsSaid) {
@@ -145,48 +107,46 @@ TEST(Strategy, OneGripperHasAWaveToo) {
   frame.rig.spacing = 0.1;
   frame.target_z = {0.01};
   expect_sound(frame, wave_strokes(frame));
-  expect_sound(frame, WaveFamily(frame).decode(random_point(WaveFamily::kDimension, 3)));
 }
 
-TEST(Strategy, EveryMemberOfBothFamiliesIsSoundAndNotTooLong) {
+TEST(Strategy, PadsThatAreDownAfterThePreshapeStayDown) {
   const SequenceFrame frame = article_frame();
-  const WaveFamily waves(frame);
-  for (unsigned seed = 0; seed < 200; ++seed) {
-    const Strokes wave = waves.decode(random_point(WaveFamily::kDimension, seed));
-    expect_sound(frame, wave);
-    EXPECT_LE(last_end(wave), frame.longest_sequence + 1e-9);
-    const GripperFamily grippers(frame, wave);
-    const Strokes strokes = grippers.decode(random_point(grippers.dimension(), seed + 1000));
-    expect_sound(frame, strokes);
-    EXPECT_LE(last_end(strokes), frame.longest_sequence + 1e-9);
-    EXPECT_GE(*std::min_element(strokes.duration.begin(), strokes.duration.end()),
-              frame.shortest_stroke - 1e-9);
+  Strokes strokes = wave_strokes(frame);
+  strokes[7].height = -frame.options.overtravel;
+  strokes[8].height = -1;  // deeper than any command goes
+  expect_sound(frame, strokes);
+  const Schedule schedule = to_schedule(frame, strokes);
+  for (const size_t g : {7, 8}) {
+    ASSERT_EQ(schedule.paths[g].size(), 3u);
+    EXPECT_EQ(schedule.paths[g][1].time, 5);
+    EXPECT_LE(std::abs(schedule.paths[g][1].z - frame.target_z[g] + frame.options.overtravel), 1e-6);
   }
+  EXPECT_EQ(schedule.paths[0].size(), 5u);
 }
 
-TEST(Strategy, EncodedBaselinesAreTheSameSchedulesInEveryFamily) {
+TEST(Strategy, GrippersLeaveLateAndBendTheirStrokesAsTheyAreTold) {
   const SequenceFrame frame = article_frame();
-  const WaveFamily waves(frame);
-  WaveParameters flat = baseline_wave(frame);
-  flat.delay = 0;
-  flat.duration = frame.options.uniform_duration;
-  const auto equal = [&](const Strokes& a, const Strokes& b) {
-    const Schedule p = to_schedule(frame, a), q = to_schedule(frame, b);
-    for (size_t g = 0; g < 25; ++g) {
-      if (p.paths[g].size() != q.paths[g].size()) return false;
-      for (size_t k = 0; k < p.paths[g].size(); ++k) {
-        if (p.paths[g][k].time != q.paths[g][k].time || p.paths[g][k].z != q.paths[g][k].z) return false;
-      }
-    }
-    return true;
-  };
-  EXPECT_TRUE(equal(waves.decode(waves.encode(flat)), uniform_strokes(frame)));
-  EXPECT_TRUE(equal(waves.decode(waves.encode(baseline_wave(frame))), wave_strokes(frame)));
-  for (const Strokes& base : {uniform_strokes(frame), wave_strokes(frame)}) {
-    const GripperFamily grippers(frame, base);
-    EXPECT_EQ(grippers.encode_base().size(), grippers.dimension());
-    EXPECT_TRUE(equal(grippers.decode(grippers.encode_base()), base));
-  }
+  Strokes strokes = uniform_strokes(frame);
+  strokes[3] = {.start = 1, .duration = 4, .height = 0.020, .leave = 0.5, .bend = 0.25};
+  expect_sound(frame, strokes);
+  const std::vector<Knot> path = to_schedule(frame, strokes).paths[3];
+  ASSERT_EQ(path.size(), 7u);
+  EXPECT_EQ(path[1].time, 2.5);
+  EXPECT_EQ(path[1].z, path[0].z);
+  EXPECT_EQ(path[3].time, 6);
+  EXPECT_EQ(path[4].time, 8);
+  EXPECT_LE(std::abs(path[4].z - (frame.target_z[3] + 0.020 - 0.25 * 0.022)), 1e-6);
+  EXPECT_EQ(path[5].time, 10);
+}
+
+TEST(Strategy, TheLargestAccelerationBoundsEveryChangeOfVelocity) {
+  SequenceFrame frame = article_frame();
+  frame.rig.max_acceleration = 0.1;
+  frame.options.uniform_duration = frame.options.preshape_duration = 0.5;
+  Strokes strokes = uniform_strokes(frame);
+  for (Stroke& stroke : strokes) stroke.height = 0.3;  // up first, then down at once: both in one blend
+  expect_sound(frame, strokes);
+  EXPECT_NE(stretched(frame, strokes).find("0.005 m/s"), std::string::npos) << stretched(frame, strokes);
 }
 
 TEST(Strategy, LowerPreshapeKeepsTheStartAndGoesFurtherDown) {

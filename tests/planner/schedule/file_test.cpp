@@ -1,4 +1,4 @@
-#include "planner/drape/schedule_file.hpp"
+#include "planner/schedule/file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The program's standard streams, in whatever condition it is started with.
+// The process: its standard streams, in whatever condition it is started with, and its signals.
 #pragma once
 
 #include <string>
@@ -13,5 +13,17 @@ void prepare_streams();
 /// @param kept  whether the text is in a file, too: then a reader that is gone has missed nothing.
 /// @throws NotFinished with the reason if it cannot be written.
 void print(const std::string& text, bool kept);
+
+/// While it lives, SIGINT and SIGTERM are remembered instead of ending the program; the second one ends it.
+class InterruptGuard {
+ public:
+  InterruptGuard();
+  ~InterruptGuard();
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+  /// Whether a signal has come.
+  [[nodiscard]] static bool interrupted();
+};
 
 }  // namespace drapeplan

@@ -32,12 +32,19 @@ struct SequenceFrame {
   [[nodiscard]] double start_z() const;
 };
 
-/// The strokes after the preshape. Gauge: the smallest start is 0.
-struct Strokes {
-  std::vector<double> start;     ///< from the end of the preshape [s]
-  std::vector<double> duration;  ///< [s]
-  double preshape_height = 0;    ///< above the targets [m]; at most the frame's, or grippers would go up
+/// What one gripper does besides going straight to its target.
+struct Stroke {
+  double start = 0;     ///< from the end of the preshape [s]
+  double duration = 0;  ///< [s]
+  /// Over the target at the end of the preshape [m]; at `overtravel` below it the pad is down already, and
+  /// there is no stroke. It may be higher than the flat start: then the gripper goes up first.
+  double height = 0;
+  double leave = 0;   ///< when it leaves the flat start, as a share of the preshape, [0, 1)
+  double bend = 0.5;  ///< share of the stroke's way that is done after half of its time; 0.5: straight
 };
+
+/// The strokes of all grippers, in the order of the grid. Gauge: the smallest start is 0.
+using Strokes = std::vector<Stroke>;
 
 enum class WaveDistance {
   rings,    ///< round(Chebyshev distance / spacing): groups of grippers, as in [Krogh]
@@ -59,57 +66,22 @@ Strokes uniform_strokes(const SequenceFrame& frame);
 Strokes wave_strokes(const SequenceFrame& frame);
 /// Strokes of any wave.
 Strokes wave_strokes(const SequenceFrame& frame, const WaveParameters& wave);
+/// Starts earlier, all by as much, so that the first is 0.
+void shift_to_gauge(Strokes& strokes);
 /// The wave of `frame.options` as a member of the family; its delay is from start to start.
 WaveParameters baseline_wave(const SequenceFrame& frame);
 
-/// Paths of all grippers: preshape (with all in-plane movement, if the rig has any), wait, stroke to
-/// `overtravel` below the target, rest until `settle` after the last stroke. Knot times increase strictly.
-/// Times are rounded to 0.1 ms and heights to 1 um, so that equal strategies from different parametrisations
-/// are equal schedules. A preshape or stroke that would need more than `rig.max_velocity` is stretched to it
-/// (see `stretched`); the starts stay. Suction ends `rig.release_time` after the last stroke, or when a press
-/// has taken over (see let_go_pressed).
+/// Paths of all grippers: rest until they leave, preshape (with all in-plane movement, if the rig has any),
+/// wait, stroke to `overtravel` below the target, rest until `settle` after the last stroke. Knot times
+/// increase strictly. Times are rounded to 0.1 ms and heights to 1 um, so that equal strategies from
+/// different parametrisations are equal schedules. A preshape or stroke that would need more than the rig's
+/// largest velocity or acceleration is stretched (see `stretched`); the starts stay. Suction ends
+/// `rig.release_time` after the last stroke, or when a press has taken over (see let_go_pressed).
 Schedule to_schedule(const SequenceFrame& frame, const Strokes& strokes);
 /// Where pads are released in the press, ends the suction of all grippers that still hold the ply when the
 /// pressure is full.
 void let_go_pressed(const std::optional<PressOptions>& press, Schedule& schedule);
 /// What to_schedule stretched, as a sentence; empty if nothing.
 std::string stretched(const SequenceFrame& frame, const Strokes& strokes);
-
-/// The wave family over [0, 1]^6:
-///   0, 1  start point, linear, from one spacing outside the grid to one spacing outside on the other side
-///   2     delay per spacing, quadratic from 0 to (longest_sequence - shortest_stroke) / (grippers along the
-///   rig - 1) 3     stroke, logarithmic from shortest_stroke to longest_sequence 4     preshape height,
-///   logarithmic from 1/4 of the frame's to the frame's 5     roundness of the front, linear
-/// Starts are scaled down together where the sequence would exceed longest_sequence. Coordinates outside [0,
-/// 1] are clipped.
-class WaveFamily {
- public:
-  explicit WaveFamily(SequenceFrame frame);
-  static constexpr int kDimension = 6;
-  [[nodiscard]] Strokes decode(const Eigen::VectorXd& x) const;
-  /// Nearest member; rings become a square front (the same strokes if the start point is a gripper).
-  [[nodiscard]] Eigen::VectorXd encode(const WaveParameters& wave) const;
-
- private:
-  SequenceFrame frame_;
-  double longest_delay_ = 0;  ///< [s]
-};
-
-/// Free starts over [0, 1]^(grippers + 1) around a base whose preshape height is kept: one start per gripper,
-/// linear from 0 to longest_sequence - shortest_stroke, then one factor on all durations of the base,
-/// logarithmic from 1/4 to 4. Starts are shifted to the gauge; what would end after longest_sequence starts
-/// earlier. Coordinates outside [0, 1] are clipped.
-class GripperFamily {
- public:
-  GripperFamily(SequenceFrame frame, Strokes base);
-  [[nodiscard]] int dimension() const;
-  [[nodiscard]] Strokes decode(const Eigen::VectorXd& x) const;
-  /// The base's own coordinates: where a search around it starts.
-  [[nodiscard]] Eigen::VectorXd encode_base() const;
-
- private:
-  SequenceFrame frame_;
-  Strokes base_;
-};
 
 }  // namespace drapeplan

@@ -1,4 +1,4 @@
-#include "planner/cli/streams.hpp"
+#include "planner/cli/process.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -11,6 +11,17 @@
 #include "mapping/error.hpp"
 
 namespace drapeplan {
+namespace {
+
+volatile std::sig_atomic_t signal_came = 0;
+
+/// Only what POSIX allows in a handler: the next signal finds the default, which ends the program.
+void remember(int number) {
+  signal_came = 1;
+  std::signal(number, SIG_DFL);
+}
+
+}  // namespace
 
 void prepare_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
@@ -32,6 +43,19 @@ void print(const std::string& text, bool kept) {
       throw NotFinished(fmt::format("stdout: cannot be written: {}", std::generic_category().message(errno)));
     }
   }
+}
+
+InterruptGuard::InterruptGuard() {
+  signal_came = 0;
+  for (const int number : {SIGINT, SIGTERM}) std::signal(number, remember);
+}
+
+InterruptGuard::~InterruptGuard() {
+  for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_DFL);
+}
+
+bool InterruptGuard::interrupted() {
+  return signal_came != 0;
 }
 
 }  // namespace drapeplan

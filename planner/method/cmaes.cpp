@@ -1,4 +1,4 @@
-#include "planner/search/cmaes.hpp"
+#include "planner/method/cmaes.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,0 +1,143 @@
+#include "planner/schedule/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace drapeplan {
+namespace {
+
+constexpr double kRounding = 1e-3;  // of a limit: times and heights of a schedule are rounded
+
+Eigen::Vector3d place(const Knot& knot) {
+  return {0, 0, knot.z};
+}
+Eigen::Vector3d place(const PlaneKnot& knot) {
+  return {knot.xy.x(), knot.xy.y(), 0};
+}
+
+/// Largest change of velocity within one blend [m/s]: corners that are closer together than it add up.
+template <class AnyKnot>
+double largest_change(const std::vector<AnyKnot>& path, double blend_time) {
+  struct Corner {
+    double time;
+    Eigen::Vector3d change;
+  };
+  std::vector<Corner> corners;
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();
+  for (size_t k = 0; k < path.size(); ++k) {
+    Eigen::Vector3d after = Eigen::Vector3d::Zero();
+    if (k + 1 < path.size())
+      after = (place(path[k + 1]) - place(path[k])) / (path[k + 1].time - path[k].time);
+    corners.push_back({path[k].time, after - before});
+    before = after;
+  }
+  double largest = 0;
+  for (size_t first = 0; first < corners.size(); ++first) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (size_t k = first; k < corners.size() && corners[k].time < corners[first].time + blend_time; ++k) {
+      sum += corners[k].change;
+      largest = std::max(largest, sum.norm());
+    }
+    largest = std::max(largest, corners[first].change.norm());
+  }
+  return largest;
+}
+
+template <class AnyKnot>
+void add_accelerations(const std::vector<std::vector<AnyKnot>>& paths, double blend_time,
+                       const RigOptions& rig, std::vector<std::string>& refusals) {
+  for (size_t g = 0; g < paths.size(); ++g) {
+    const double change = largest_change(paths[g], blend_time);
+    if (!(change > 0)) continue;
+    const double acceleration = change / blend_time;
+    if (rig.max_acceleration && acceleration > *rig.max_acceleration * (1 + kRounding))
+      refusals.push_back(fmt::format(
+          "gripper {} accelerates by {:g} m/s^2, more than grippers.max_acceleration ({:g} m/s^2)",
+          rig.name(int(g)), acceleration, *rig.max_acceleration));
+    if (rig.pad_mass * acceleration > rig.actuator_force_limit * (1 + kRounding))
+      refusals.push_back(fmt::format(
+          "gripper {} needs {:g} N to change its velocity within the blend time of {:g} s, more than "
+          "grippers.actuator_force_limit ({:g} N)",
+          rig.name(int(g)), rig.pad_mass * acceleration, blend_time, rig.actuator_force_limit));
+  }
+}
+
+/// The longest that an interlink is at any time [m].
+double longest(const RigOptions& rig, size_t link) {
+  return std::max(rig.spacing, interlink_length(rig, link)) + rig.interlinks->play[1];
+}
+
+/// By how much the command of gripper a is above that of b.
+Knot above(const Schedule& schedule, int a, int b, double time, double& rate) {
+  const Command high = schedule.command(a, time), low = schedule.command(b, time);
+  rate = high.vz - low.vz;
+  return {time, high.z - low.z};
+}
+
+/// The instant at which two grippers are furthest apart in height, and by how much. Commanded heights are
+/// parabolas between knots and ends of blends, and so are their differences: these are looked at at their
+/// ends and vertices.
+Knot furthest_apart(const Schedule& schedule, int a, int b, const std::set<double>& times) {
+  Knot furthest{}, before{};
+  double rate_before = 0;
+  const auto look = [&](const Knot& at) {
+    if (std::abs(at.z) > std::abs(furthest.z)) furthest = at;
+  };
+  for (const double time : times) {
+    double rate = 0;
+    const Knot now = above(schedule, a, b, time, rate);
+    if (rate * rate_before < 0) {
+      double none = 0;
+      const double vertex = before.time + (time - before.time) * rate_before / (rate_before - rate);
+      look(above(schedule, a, b, vertex, none));
+    }
+    look(now);
+    before = now;
+    rate_before = rate;
+  }
+  return furthest;
+}
+
+void add_stretched_interlinks(const Schedule& schedule, const RigOptions& rig,
+                              std::vector<std::string>& refusals) {
+  if (!rig.interlinks || rig.interlinks->stiffness) return;
+  std::set<double> times;
+  for (const auto& path : schedule.paths) {
+    for (const Knot& knot : path) times.insert({knot.time, knot.time + schedule.blend_time});
+  }
+  const auto links = interlinks(rig);
+  for (size_t k = 0; k < links.size(); ++k) {
+    const auto [a, b] = links[k];
+    const Knot apart = furthest_apart(schedule, a, b, times);
+    if (!(std::abs(apart.z) > longest(rig, k) * (1 + kRounding))) continue;
+    refusals.push_back(
+        fmt::format("grippers {} and {} are to be {:.1f} mm apart in height at {:.2f} s: their interlink is "
+                    "{:.1f} mm long",
+                    rig.name(a), rig.name(b), 1e3 * std::abs(apart.z), apart.time, 1e3 * longest(rig, k)));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> rig_refusals(const Schedule& schedule, const RigOptions& rig) {
+  std::vector<std::string> refusals;
+  const double fastest = schedule.largest_velocity();
+  if (fastest > rig.max_velocity * (1 + kRounding))
+    refusals.push_back(fmt::format("moves at up to {:g} m/s, more than grippers.max_velocity ({:g} m/s)",
+                                   fastest, rig.max_velocity));
+  if (schedule.blend_time > 0) {
+    add_accelerations(schedule.paths, schedule.blend_time, rig, refusals);
+    add_accelerations(schedule.plane_paths, schedule.blend_time, rig, refusals);
+  } else if (rig.max_acceleration && fastest > 0) {
+    refusals.emplace_back(
+        "changes its velocities at once: without a blend time no acceleration is small enough for "
+        "grippers.max_acceleration");
+  }
+  add_stretched_interlinks(schedule, rig, refusals);
+  return refusals;
+}
+
+}  // namespace drapeplan

@@ -1,0 +1,20 @@
+// Whether a rig can do what a schedule says, as far as that is known before a run.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fem/rig/rig.hpp"
+#include "fem/rig/schedule.hpp"
+
+namespace drapeplan {
+
+/// What a rig cannot do of a schedule, a sentence each; empty if nothing is known against it. Looked at are
+/// the largest velocity; the largest acceleration, of a change of velocity that is spread over the blend
+/// time; the force that a pad's mass needs for it; and heights of neighbours that are further apart than
+/// their interlink is long. What a ply's stiffness and the mold resist, only the simulation knows: see the
+/// lag of a score.
+/// @param schedule  of this rig: one path per gripper.
+std::vector<std::string> rig_refusals(const Schedule& schedule, const RigOptions& rig);
+
+}  // namespace drapeplan
