@@ -38,8 +38,9 @@ class CmaEs : public Method {
 
   [[nodiscard]] int dimension() const { return int(mean_.size()); }
   [[nodiscard]] int population() const { return population_; }
-  [[nodiscard]] int generation() const { return generation_; }  ///< how many were told
-  [[nodiscard]] Eigen::VectorXd mean() const;                   ///< folded into the box
+  /// The points of the last generation.
+  [[nodiscard]] const Eigen::MatrixXd& generation_points() const { return folded_; }
+  [[nodiscard]] Eigen::VectorXd mean() const;  ///< folded into the box
   [[nodiscard]] double sigma() const { return sigma_; }
   /// Why there is no point in going on; empty if there is.
   [[nodiscard]] std::string stop_reason() const override;

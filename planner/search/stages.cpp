@@ -13,8 +13,8 @@
 
 #include "planner/base/statistics.hpp"
 #include "planner/drape/problem.hpp"
-#include "planner/method/cmaes.hpp"
 #include "planner/method/nlopt.hpp"
+#include "planner/method/restarts.hpp"
 #include "planner/schedule/families.hpp"
 #include "planner/search/interrupted.hpp"
 
@@ -49,7 +49,10 @@ bool better(const Trial& a, const Trial& b) {
   return a.objective < b.objective;
 }
 
-/// Of candidates that are compared in the end: first those whose commands were followed.
+/// Of candidates that may win: first those whose commands were followed.
+bool ranks_before(const Trial& a, const Trial& b) {
+  return a.followed != b.followed ? a.followed : better(a, b);
+}
 bool ranks_before(const Outcome& a, const Outcome& b) {
   if (a.score.followed != b.score.followed) return a.score.followed;
   return value_of(a) < value_of(b);
@@ -230,17 +233,20 @@ void StagedSearch::search_smooth() {
 
 void StagedSearch::search_grippers() {
   const StrokeFamily family(frame_, {.start = Spread::each, .height = Spread::each});
-  CmaEs search(family.encode(best_at(options_.ladder.front())->strokes),
-               {.sigma0 = kGripperSigma, .seed = options_.optimise.seed});
+  RestartedCmaEs search(family.encode(best_at(options_.ladder.front())->strokes),
+                        {.sigma0 = kGripperSigma, .seed = options_.optimise.seed});
   const Decode decode = [&](const Eigen::VectorXd& x) { return family.decode(x); };
   const auto search_until = [&](double end, size_t rung) {
     while (budget_.spent() < end && advance(search, decode, {options_.ladder[rung]}, "gripper")) {
     }
   };
   const size_t finest = options_.ladder.size() - 1;
-  for (size_t rung = 0; rung < finest; ++rung) climb(search, decode, rung, search_until);
+  for (size_t rung = 0; rung < finest; ++rung) {
+    climb(search, decode, rung, search_until);
+    search.forget_values();
+  }
   search_until(kGripperEnd, finest);
-  if (search.generation() > 0) centres_.push_back({"gripper centre", family.decode(search.mean())});
+  if (search.generations() > 0) centres_.push_back({"gripper centre", family.decode(search.mean())});
 }
 
 /// Searches at one fidelity until its ranks are no longer those of the next one, or its share is spent. Where
@@ -286,9 +292,8 @@ std::vector<Trial> StagedSearch::pick_finalists() const {
     if (list == trials_.end()) continue;
     std::vector<const Trial*> sorted;
     for (const Trial& trial : list->second) sorted.push_back(&trial);
-    std::stable_sort(sorted.begin(), sorted.end(), [](const Trial* a, const Trial* b) {
-      return a->followed != b->followed ? a->followed : better(*a, *b);
-    });
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const Trial* a, const Trial* b) { return ranks_before(*a, *b); });
     for (const Trial* trial : sorted) {
       if (finalists.size() >= wanted || !std::isfinite(trial->objective)) break;
       add_if_new(*trial);
@@ -336,8 +341,12 @@ void StagedSearch::conclude_early() {
   conclude();
   result_.interrupted = true;
   for (auto fidelity = options_.ladder.rbegin(); fidelity != options_.ladder.rend(); ++fidelity) {
-    const Trial* best = best_at(*fidelity);
-    if (!best || !std::isfinite(best->objective)) continue;
+    const std::vector<Trial>& list = trials_[*fidelity];
+    const auto best = std::min_element(list.begin(), list.end(), [](const Trial& a, const Trial& b) {
+      return std::isfinite(a.objective) != std::isfinite(b.objective) ? std::isfinite(a.objective)
+                                                                      : ranks_before(a, b);
+    });
+    if (best == list.end() || !std::isfinite(best->objective)) continue;
     result_.best = {best->name, schedule_of(*best), {}};
     result_.best_fidelity = *fidelity;
     break;

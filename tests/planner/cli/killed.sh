@@ -18,18 +18,22 @@ same_end() {
   done
 }
 
-# Kills spread over the whole run, each a little after the log has grown to its share.
-run=$work/run resume=
-for k in $(seq "$kills"); do
-  "$program" "${plan[@]}" $resume --out "$run" 2>/dev/null &
-  job=$!
-  until [ "$(lines "$run")" -ge $((k * total / (kills + 1))) ] || ! kill -0 $job 2>/dev/null; do sleep 0.02; done
-  sleep "0.0$((RANDOM % 10))"
-  { kill -9 $job && wait $job; } 2>/dev/null
-  resume=--resume
-done
-expect 0 "${plan[@]}" --resume --out "$run"
-same_end "$run" "$kills kills"
+# killed TIMES RUN OPTIONS...: kills spread over the whole run, each a little after the log has grown to its share.
+killed() {
+  local times=$1 run=$2 resume= k job
+  shift 2
+  for k in $(seq "$times"); do
+    "$program" "${plan[@]}" "$@" $resume --out "$run" 2>/dev/null &
+    job=$!
+    until [ "$(lines "$run")" -ge $((k * total / (times + 1))) ] || ! kill -0 $job 2>/dev/null; do sleep 0.02; done
+    sleep "0.0$((RANDOM % 10))"
+    { kill -9 $job && wait $job; } 2>/dev/null
+    resume=--resume
+  done
+  expect 0 "${plan[@]}" "$@" --resume --out "$run"
+}
+killed "$kills" "$work/run"
+same_end "$work/run" "$kills kills"
 
 # Ctrl-C, once the baselines are known: what runs is finished, the best so far is written, 3.
 run=$work/interrupted
@@ -58,9 +62,19 @@ same 3 $? "exit code of a plan that is interrupted early"
 says "interrupted; --resume goes on"
 [ ! -e "$run/schedule.json" ] || fail "there is a schedule"
 
+# With a search over the rig before that over schedules.
+design=(--set 'optimise.design=[{"path": "grippers.joint_offset", "from": "0 mm", "to": "4 mm"}]'
+  --set optimise.design_evaluations=18 --set optimise.evaluations=15)
+expect 0 "${plan[@]}" "${design[@]}" --out "$work/design"
+total=$(lines "$work/design")
+killed 2 "$work/killed-design" "${design[@]}"
+same_file "$work/killed-design/design.json" "$work/design/design.json"
+same "$(value "$work/design/result.json" /best/design)" "$(value "$work/killed-design/result.json" /best/design)" "design"
+same_file "$work/killed-design/schedule.json" "$work/design/schedule.json"
+
 refuse "--budget: a time" plan "$quick" --budget "10 mm"
 refuse "--budget: a number of evaluations is 1 or more" plan "$quick" --budget 0
 expect 0 "${plan[@]}" --budget "3 s" --out "$work/timed"
 within "$work/timed/result.json" /evaluations 3 10000
 within "$work/timed/result.json" /wall_seconds 0 30
-finish 25
+finish 30
