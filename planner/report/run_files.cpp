@@ -92,7 +92,7 @@ Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows, c
   }
   for (const Candidate* candidate : unbeaten(search.finalists)) {
     const Score& score = candidate->outcome.score;
-    chart.series.push_back({.name = fmt::format("front: {}, {:.1f} s", candidate->name, score.duration),
+    chart.series.push_back({.name = fmt::format("{}, {:.1f} s", candidate->name, score.duration),
                             .points = {{1e3 * score.max_boundary_offset, 1e3 * score.max_gap}},
                             .rings = true});
   }
@@ -231,7 +231,9 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   if (const FloorFront& front = problem.ply_floor().front; !front.points.empty()) {
     report.figures.push_back(
         {"Largest gap against largest boundary offset: drapes, and the floor below which no "
-         "schedule comes while fibres stretch by 1 % at most",
+         "schedule comes while fibres stretch by 1 % at most; rings are the candidates that no other one "
+         "beats "
+         "in gap, offset and duration at once",
          line_chart(floor_chart(front, report.rows, search))});
   }
   report.facts = {{"evaluations", fmt::to_string(search.evaluations)},
