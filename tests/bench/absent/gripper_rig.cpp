@@ -1,4 +1,4 @@
-// In place of fem/rig/gripper_rig.cpp, fem/rig/interlinks.cpp and fem/rig/rotation_stop.cpp.
+// In place of gripper_rig.cpp, check_schedule.cpp, interlinks.cpp and rotation_stop.cpp of fem/rig.
 #include "fem/rig/gripper_rig.hpp"
 
 #include "tests/bench/absent/absent.hpp"
@@ -38,6 +38,12 @@ void GripperRig::place(State& /*state*/, double /*z*/) const {
   absent(kRig);
 }
 RigScratch GripperRig::scratch() const {
+  absent(kRig);
+}
+double GripperRig::lag(const State& /*state*/, const RigDrive& /*drive*/, int /*g*/) const {
+  absent(kRig);
+}
+bool GripperRig::saturated(const State& /*state*/, const RigDrive& /*drive*/, int /*g*/) const {
   absent(kRig);
 }
 void GripperRig::let_go(State& /*state*/, const RigDrive& /*drive*/) const {
