@@ -102,6 +102,13 @@ void check_rotation_limits(const RigOptions& rig, FieldReader& reader) {
   check("about_weft", rig.rotation_limits->about_weft);
 }
 
+/// Without a blend every change of velocity is a jump.
+void check_acceleration(const RigOptions& rig, FieldReader& reader) {
+  const std::string pointer = "/grippers/max_acceleration";
+  if (rig.max_acceleration && !(rig.blend_time > 0) && reader.good(pointer))
+    reader.fail(pointer, "needs a grippers.blend_time > 0 s");
+}
+
 void check_interlinks(const CaseFields& fields, FieldReader& reader) {
   const std::string pointer = "/grippers/interlinks";
   const RigOptions& rig = *fields.definition.grippers;
@@ -136,6 +143,7 @@ void check_grippers(const CaseFields& fields, FieldReader& reader) {
                                          format_quantity(2 * rig.pad_radius, Dimension::length));
   }
   check_rotation_limits(rig, reader);
+  check_acceleration(rig, reader);
   check_interlinks(fields, reader);
   if (rig.driven == Driven::xyz) {
     if (rig.interlinks)

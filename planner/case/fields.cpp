@@ -136,7 +136,7 @@ void visit_optimise(FieldVisitor& v, OptimiseOptions& o) {
   v.field({"budget", &o.budget, "Time that a plan may take, with its reports", Dimension::time, positive()});
   v.field({"evaluations", &o.evaluations,
            "Evaluations that a plan may take below the reporting fidelity, instead of a time: the result can "
-           "then be had again; 0: `budget` counts",
+           "then be had again; its last generation may go over it; 0: `budget` counts",
            Dimension::none, from(0, 1e7)});
   v.field({"finalists", &o.finalists, "Best schedules that are evaluated at the reporting fidelity",
            Dimension::none, from(1, 1e4)});

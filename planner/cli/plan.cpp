@@ -180,7 +180,7 @@ std::string result_text(const DrapeProblem& problem, const PlanResult& result,
                   result.search.message, result.search.evaluations, result.search.failed_evaluations,
                   std::llround(result.wall_seconds));
   if (result.best.score.valid) text += fmt::format("; report: {}", (folder / "report.html").string());
-  if (result.design) text += design_text(result);
+  if (result.design && !result.search.interrupted) text += design_text(result);
   return text + "\n";
 }
 
@@ -299,6 +299,7 @@ int plan_all(const PlanVerbOptions& options) {
   for (size_t k = 0; k < cases.size(); ++k) {
     const ExitCode one = plan_and_add(std::move(cases[k]), options.files[k], options, out[k], results);
     if (code == kDone || one == kInputWrong) code = one;
+    if (InterruptGuard::interrupted()) break;  // the cases that follow, too, are not wanted any more
   }
   if (options.common.json)
     print(document_text(results.size() == 1 ? results[0] : json{{"cases", results}}), true);

@@ -14,7 +14,8 @@ void prepare_streams();
 /// @throws NotFinished with the reason if it cannot be written.
 void print(const std::string& text, bool kept);
 
-/// While it lives, SIGINT and SIGTERM are remembered instead of ending the program; the second one ends it.
+/// While it lives, SIGINT and SIGTERM are remembered instead of ending the program; a second one of the same
+/// kind ends it.
 class InterruptGuard {
  public:
   InterruptGuard();

@@ -15,7 +15,7 @@ class Method {
   Method& operator=(const Method&) = delete;
   virtual ~Method() = default;
 
-  /// The next batch: n by at least one, every column in the box; without columns once there is a stop_reason.
+  /// The next batch: n by any number, every column in the box; without columns if the search has just ended.
   virtual const Eigen::MatrixXd& ask() = 0;
   /// Values of the last batch, in its order; lower is better, not finite is a failure.
   virtual void tell(const Eigen::VectorXd& values) = 0;

@@ -252,7 +252,7 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
                   {"mold.vtu", "the mold, for ParaView"}};
   if (result.design) {
     report.files.emplace_back(kDesignFile, "the case with what was changed of the rig; it runs on its own");
-    report.notes.push_back(design_note(result));
+    if (!search.interrupted) report.notes.push_back(design_note(result));
   }
   return report;
 }

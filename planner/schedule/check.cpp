@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 namespace drapeplan {
@@ -20,7 +21,8 @@ Eigen::Vector3d place(const PlaneKnot& knot) {
 
 /// Largest change of velocity within one blend [m/s]: corners that are closer together than it add up.
 template <class AnyKnot>
-double largest_change(const std::vector<AnyKnot>& path, double blend_time) {
+double largest_change(const std::vector<AnyKnot>& path, double blend_time,
+                      const std::function<double(const Eigen::Vector3d&)>& norm) {
   struct Corner {
     double time;
     Eigen::Vector3d change;
@@ -39,9 +41,9 @@ double largest_change(const std::vector<AnyKnot>& path, double blend_time) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (size_t k = first; k < corners.size() && corners[k].time < corners[first].time + blend_time; ++k) {
       sum += corners[k].change;
-      largest = std::max(largest, sum.norm());
+      largest = std::max(largest, norm(sum));
     }
-    largest = std::max(largest, corners[first].change.norm());
+    largest = std::max(largest, norm(corners[first].change));
   }
   return largest;
 }
@@ -50,18 +52,19 @@ template <class AnyKnot>
 void add_accelerations(const std::vector<std::vector<AnyKnot>>& paths, double blend_time,
                        const RigOptions& rig, std::vector<std::string>& refusals) {
   for (size_t g = 0; g < paths.size(); ++g) {
-    const double change = largest_change(paths[g], blend_time);
-    if (!(change > 0)) continue;
-    const double acceleration = change / blend_time;
+    const auto length = [](const Eigen::Vector3d& v) { return v.norm(); };
+    const auto along_axes = [](const Eigen::Vector3d& v) { return v.lpNorm<Eigen::Infinity>(); };
+    const double acceleration = largest_change(paths[g], blend_time, length) / blend_time;
+    const double force = rig.pad_mass * largest_change(paths[g], blend_time, along_axes) / blend_time;
     if (rig.max_acceleration && acceleration > *rig.max_acceleration * (1 + kRounding))
       refusals.push_back(fmt::format(
           "gripper {} accelerates by {:g} m/s^2, more than grippers.max_acceleration ({:g} m/s^2)",
           rig.name(int(g)), acceleration, *rig.max_acceleration));
-    if (rig.pad_mass * acceleration > rig.actuator_force_limit * (1 + kRounding))
+    if (force > rig.actuator_force_limit * (1 + kRounding))
       refusals.push_back(fmt::format(
           "gripper {} needs {:g} N to change its velocity within the blend time of {:g} s, more than "
           "grippers.actuator_force_limit ({:g} N)",
-          rig.name(int(g)), rig.pad_mass * acceleration, blend_time, rig.actuator_force_limit));
+          rig.name(int(g)), force, blend_time, rig.actuator_force_limit));
   }
 }
 

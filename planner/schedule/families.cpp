@@ -93,8 +93,8 @@ Strokes WaveFamily::decode(const Eigen::VectorXd& x) const {
   Strokes strokes = wave_strokes(frame_, wave);
   double last = 0;
   for (const Stroke& stroke : strokes) last = std::max(last, stroke.start);
-  const double room = frame_.longest_sequence - wave.duration;
-  if (last > room) {
+  const double room = std::max(frame_.longest_sequence - wave.duration, 0.0);
+  if (last > room && last > 0) {
     for (Stroke& stroke : strokes) stroke.start *= room / last;
   }
   return strokes;
@@ -102,11 +102,13 @@ Strokes WaveFamily::decode(const Eigen::VectorXd& x) const {
 
 Eigen::VectorXd WaveFamily::encode(const WaveParameters& wave) const {
   const Eigen::Vector2d reach = reach_of_start(frame_.rig);
+  const double highest = frame_.options.preshape_height;
+  const double share = highest > 0 ? wave.preshape_height / highest : 1;
   Eigen::VectorXd x(kDimension);
   x << inverse_linear(wave.start[0], -reach[0], reach[0]), inverse_linear(wave.start[1], -reach[1], reach[1]),
       std::sqrt(inverse_linear(wave.delay, 0, longest_delay_)),
       inverse_logarithmic(wave.duration, frame_.shortest_stroke, frame_.longest_sequence),
-      inverse_logarithmic(wave.preshape_height / frame_.options.preshape_height, kLowestPreshape, 1),
+      inverse_logarithmic(share, kLowestPreshape, 1),
       wave.distance == WaveDistance::rings ? 0 : unit(wave.roundness);
   return x;
 }

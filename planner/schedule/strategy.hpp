@@ -1,8 +1,8 @@
 // Draping strategies: who goes down when. All are pure functions from a few numbers to a schedule.
 //
 // A sequence has two parts ([Krogh], "Motion Planning"): the preshape, a straight line of constant velocity
-// to the same height above every target, and then one stroke per gripper down to its target. A strategy is
-// only the choice of the strokes; `to_schedule` does the rest.
+// to a height above every target, the same in the baselines, and then one stroke per gripper down to its
+// target. A strategy is only the choice of the strokes; `to_schedule` does the rest.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,8 +27,8 @@ struct SequenceFrame {
   double longest_sequence = 15.0;  ///< after the preshape [s], of the searched families
   std::optional<PressOptions> press = {};
 
-  /// Height of all joints at t = 0: the highest target plus the preshape height, so that grippers only go
-  /// down [m].
+  /// Height of all joints at t = 0: the highest target plus the preshape height, so that grippers of the
+  /// baselines only go down [m].
   [[nodiscard]] double start_z() const;
 };
 

@@ -21,13 +21,17 @@ void Budget::count(const std::string& stage, const std::string& fidelity,
   const std::scoped_lock lock(mutex_);
   Kind& kind = kinds_.try_emplace(fidelity, Kind{.best = kInfinity}).first->second;
   longest_ = 0;
+  if (searched_ + reported_ == 0 && !outcomes.empty())
+    begin_ = std::max(outcomes.front().elapsed - outcomes.front().wall_seconds, 0.0);
   for (const Outcome& outcome : outcomes) {
     kind.best = std::min(kind.best, value_of(outcome));
     ++(report ? reported_ : searched_);
     ++kind.runs;
     kind.seconds += outcome.wall_seconds;
-    kind.duration += outcome.score.duration;
-    longest_ = std::max(longest_, outcome.score.duration);
+    if (outcome.score.valid) {  // the parts of a failed score are not logged
+      kind.duration += outcome.score.duration;
+      longest_ = std::max(longest_, outcome.score.duration);
+    }
     elapsed_ = std::max(elapsed_, outcome.elapsed);
   }
   if (progress_) progress_(progress(stage, kind));
@@ -41,7 +45,7 @@ void Budget::reserve(int runs) {
 double Budget::rate() const {
   double seconds = 0;
   for (const auto& [fidelity, kind] : kinds_) seconds += kind.seconds;
-  return seconds > 0 ? std::min(elapsed_ / seconds, 1.0) : 1;
+  return seconds > 0 ? std::min((elapsed_ - begin_) / seconds, 1.0) : 1;
 }
 
 /// A report costs in proportion to the schedule's length, and the finalists will be as long as what is

@@ -55,6 +55,7 @@ class Budget {
   int searched_ = 0, reported_ = 0, reserved_ = 0;
   double longest_ = 0;  ///< of the schedules of the last batch [s]
   double elapsed_ = 0;  ///< on the log's clock [s]
+  double begin_ = 0;    ///< of the first evaluation that is counted, on the same clock [s]
 };
 
 }  // namespace drapeplan

@@ -12,6 +12,7 @@
 #include "planner/case/design.hpp"
 #include "planner/case/file.hpp"
 #include "planner/method/cmaes.hpp"
+#include "planner/schedule/check.hpp"
 #include "planner/schedule/families.hpp"
 #include "planner/search/batch_evaluate.hpp"
 #include "planner/search/interrupted.hpp"
@@ -104,8 +105,11 @@ class JointSpace {
     return scored([&] {
       const auto problem = problem_with(base_, overrides(x));
       const WaveFamily family(problem->frame());
-      const Strokes strokes = family.decode(x.tail<WaveFamily::kDimension>());
-      return outcome_of(problem->run(to_schedule(problem->frame(), strokes), fidelity));
+      const Schedule schedule =
+          to_schedule(problem->frame(), family.decode(x.tail<WaveFamily::kDimension>()));
+      if (const auto refusals = rig_refusals(schedule, *problem->definition().grippers); !refusals.empty())
+        throw WrongInput(refusals.front());
+      return outcome_of(problem->run(schedule, fidelity));
     });
   }
 
@@ -121,6 +125,11 @@ Schedule carried_over(const Schedule& schedule, const SequenceFrame& from, const
     std::vector<Knot>& path = carried.paths[g];
     path.front().z += to.start_z() - from.start_z();
     for (size_t k = 1; k < path.size(); ++k) path[k].z += to.target_z[g] - from.target_z[g];
+  }
+  for (size_t g = 0; g < carried.plane_paths.size(); ++g) {
+    std::vector<PlaneKnot>& path = carried.plane_paths[g];
+    path.front().xy += to.start_xy[g] - from.start_xy[g];
+    for (size_t k = 1; k < path.size(); ++k) path[k].xy += to.target_xy[g] - from.target_xy[g];
   }
   return carried;
 }

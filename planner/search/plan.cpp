@@ -132,18 +132,17 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
   const BatchEvaluate batch = make_batch_evaluate(evaluate, log, options.threads, design, options.stop);
   result.search = staged_search(problem.frame(), staged, batch, progress);
   const StagedResult& search = result.search;
-  if (search.best_fidelity != kReport) {  // interrupted: a run at its own fidelity is quick
-    result.best = problem.run(search.best.schedule, search.best_fidelity, kFrames);
-    result.uniform = reported.take(problem, search.uniform.schedule);
-    result.wave = reported.take(problem, search.wave.schedule);
-    return;
-  }
-  const std::array<std::pair<const Candidate*, Drape*>, 3> wanted{
-      {{&search.uniform, &result.uniform}, {&search.wave, &result.wave}, {&search.best, &result.best}}};
+  const auto take = [&](const Candidate& candidate, const std::string& fidelity) {
+    // Interrupted: a run at the fidelity of the search is quick.
+    return fidelity == kReport ? reported.take(problem, candidate.schedule)
+                               : problem.run(candidate.schedule, fidelity, kFrames);
+  };
+  const std::array<std::function<void()>, 3> jobs{
+      [&] { result.uniform = take(search.uniform, kReport); },
+      [&] { result.wave = take(search.wave, kReport); },
+      [&] { result.best = take(search.best, search.best_fidelity); }};
   parallel_for(
-      int(wanted.size()),
-      [&](int k) { *wanted[size_t(k)].second = reported.take(problem, wanted[size_t(k)].first->schedule); },
-      options.threads);
+      int(jobs.size()), [&](int k) { jobs[size_t(k)](); }, options.threads);
 }
 
 }  // namespace
@@ -168,7 +167,7 @@ PlanResult plan(const DrapeProblem& problem, OutputFolder& out, const PlanOption
   }
   const std::uint64_t design = result.design ? design_hash(result.design->overrides) : 0;
   search_schedules(planned_problem(problem, result), design, log, options, progress, result);
-  if (result.design) {
+  if (result.design && !result.search.interrupted) {
     const Schedule uniform = to_schedule(problem.frame(), uniform_strokes(problem.frame()));
     result.given = problem.run(uniform, kReport).score;
     compare_changes(problem, result.search.best.schedule, log, options.threads, *result.design);

@@ -44,7 +44,8 @@ inline const DrapeProblem& planned_problem(const DrapeProblem& given, const Plan
 }
 
 /// Searches for the best schedule of the problem; where the case has design variables, for the best rig
-/// first. The result depends on the case only: not on threads, nor on what was resumed. Results of an earlier
+/// first. With a budget of evaluations the result depends on the case only: not on threads, nor on what was
+/// resumed. Results of an earlier
 /// run in `out` are set aside, resolved.json is written, and evaluations are appended to evaluations.jsonl as
 /// they end. Memory: per evaluation its outcome, its strokes and its line of the history, a few kilobytes;
 /// whole drapes are kept of the two baselines and of the best so far only.

@@ -49,13 +49,17 @@ bool better(const Trial& a, const Trial& b) {
   return a.objective < b.objective;
 }
 
-/// Of candidates that may win: first those whose commands were followed.
+/// Of candidates that may win: first those that ran to their end, of these those whose commands were
+/// followed.
 bool ranks_before(const Trial& a, const Trial& b) {
+  if (std::isfinite(a.objective) != std::isfinite(b.objective)) return std::isfinite(a.objective);
   return a.followed != b.followed ? a.followed : better(a, b);
 }
+Trial rank_of(const Outcome& outcome) {
+  return {.name = {}, .strokes = {}, .objective = value_of(outcome), .followed = outcome.score.followed};
+}
 bool ranks_before(const Outcome& a, const Outcome& b) {
-  if (a.score.followed != b.score.followed) return a.score.followed;
-  return value_of(a) < value_of(b);
+  return ranks_before(rank_of(a), rank_of(b));
 }
 
 class StagedSearch {
@@ -71,8 +75,10 @@ class StagedSearch {
     budget_.reserve(options_.optimise.finalists + kCentres);
     try {
       search_waves();
-      search_smooth();
-      search_grippers();
+      if (std::isfinite(best_at(options_.ladder.front())->objective)) {
+        search_smooth();
+        search_grippers();
+      }
       compare(pick_finalists(), "report");
       conclude();
     } catch (const Interrupted&) {
@@ -197,7 +203,7 @@ bool StagedSearch::advance(Method& method, const Decode& decode, const std::vect
   if (x.cols() == 0) return false;
   std::vector<Trial> trials;
   for (Eigen::Index k = 0; k < x.cols(); ++k) {
-    const size_t number = trials_[fidelities.back()].size() + size_t(k) + 1;
+    const size_t number = result_.history.size() + size_t(k) + 1;
     trials.push_back({fmt::format("{} {}", stage, number), decode(x.col(k))});
   }
   std::vector<double> before, values;
@@ -258,7 +264,7 @@ void StagedSearch::climb(Method& search, const Decode& decode, size_t rung,
   for (int part = 1; part <= kScreenParts; ++part) {
     search_until(begin + (kScreenEnd - begin) * part / kScreenParts, rung);
     if (budget_.spent() >= kScreenEnd || !advance(search, decode, {here, next}, "gripper")) return;
-    if (correlation_ < kTrustedCorrelation) return;
+    if (!(correlation_ >= kTrustedCorrelation)) return;  // one that is not defined is not trusted
   }
 }
 
@@ -314,15 +320,22 @@ void StagedSearch::conclude() {
                    [](const Candidate& a, const Candidate& b) { return ranks_before(a.outcome, b.outcome); });
   result_.best = result_.finalists.front();
   result_.best_fidelity = kReport;
-  const double baseline = std::min(value_of(result_.uniform.outcome), value_of(result_.wave.outcome));
-  const double best = value_of(result_.best.outcome);
-  result_.beats_baselines = best < baseline;
+  const Outcome& better_baseline = ranks_before(result_.wave.outcome, result_.uniform.outcome)
+                                       ? result_.wave.outcome
+                                       : result_.uniform.outcome;
+  const double baseline = value_of(better_baseline), best = value_of(result_.best.outcome);
+  result_.beats_baselines = ranks_before(result_.best.outcome, better_baseline);
   const std::string& name = result_.best.name;
   if (!std::isfinite(best)) {
     result_.message = fmt::format("no schedule could be evaluated at fidelity \"{}\"", kReport);
   } else if (!std::isfinite(baseline)) {
     result_.message =
         fmt::format("both baselines failed; the best schedule, {}, has an objective of {:.6g}", name, best);
+  } else if (result_.beats_baselines && best >= baseline) {
+    result_.message = fmt::format(
+        "the optimised sequence (candidate \"{}\") has an objective of {:.4g}; the rig does not follow the "
+        "baselines, of which the better one has {:.4g}",
+        name, best, baseline);
   } else if (result_.beats_baselines) {
     result_.message = fmt::format(
         "the optimised sequence (candidate \"{}\") has an objective of {:.4g}, {:.1f} % below the better "
@@ -342,14 +355,16 @@ void StagedSearch::conclude_early() {
   result_.interrupted = true;
   for (auto fidelity = options_.ladder.rbegin(); fidelity != options_.ladder.rend(); ++fidelity) {
     const std::vector<Trial>& list = trials_[*fidelity];
-    const auto best = std::min_element(list.begin(), list.end(), [](const Trial& a, const Trial& b) {
-      return std::isfinite(a.objective) != std::isfinite(b.objective) ? std::isfinite(a.objective)
-                                                                      : ranks_before(a, b);
-    });
+    const auto best = std::min_element(list.begin(), list.end(),
+                                       [](const Trial& a, const Trial& b) { return ranks_before(a, b); });
     if (best == list.end() || !std::isfinite(best->objective)) continue;
     result_.best = {best->name, schedule_of(*best), {}};
     result_.best_fidelity = *fidelity;
     break;
+  }
+  if (!std::isfinite(value_of(result_.best.outcome)) && result_.best_fidelity == kReport) {
+    result_.message += "; interrupted, --resume goes on";
+    return;
   }
   result_.message = fmt::format(
       "interrupted after {} evaluations; the best so far is {}, at fidelity \"{}\"; --resume goes on",

@@ -71,7 +71,7 @@ std::vector<const Candidate*> unbeaten(const std::vector<Candidate>& candidates)
 /// The result depends on frame, options and evaluate only: not on threads, nor on what was served from a log.
 /// Where the budget is a time, it depends on the clock of the log, too.
 /// @param evaluate  safe to call concurrently. Once it throws Interrupted, the search ends with what it has.
-/// @param progress  called after each evaluation, one call at a time, from any thread; may be empty.
+/// @param progress  called after each batch of evaluations; may be empty.
 /// @throws Interrupted before the baselines are known.
 StagedResult staged_search(const SequenceFrame& frame, const StagedOptions& options,
                            const BatchEvaluate& evaluate,

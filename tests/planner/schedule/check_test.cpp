@@ -76,6 +76,7 @@ TEST(RigRefusals, LookAtWaysInThePlane) {
   pair.rig.driven = Driven::xyz;
   pair.rig.interlinks.reset();
   pair.rig.max_acceleration = 0.4;
+  pair.rig.pad_mass = 110;  // 33 and 44 N along the axes, 55 N together: each actuator has 50
   pair.schedule.plane_paths = {{{0, {0, 0}}, {1, {0.03, 0.04}}}, {{0, {0.1, 0}}}};
   EXPECT_EQ(pair.refusals(),
             "gripper [1, 1] accelerates by 0.5 m/s^2, more than grippers.max_acceleration (0.4 m/s^2)\n");

@@ -61,6 +61,17 @@ TEST(WaveFamily, HasAMemberOnARigOfOneGripper) {
   expect_sound(frame, WaveFamily(frame).decode(even_point(3, WaveFamily::kDimension)));
 }
 
+TEST(WaveFamily, HasNoMemberThatIsNotFinite) {
+  SequenceFrame frame = article_frame();
+  frame.options.preshape_height = 0;
+  EXPECT_TRUE(WaveFamily(frame).encode(baseline_wave(frame)).allFinite());
+  frame = article_frame();
+  frame.options.wave_duration = frame.longest_sequence = 5.9;
+  WaveParameters flat = baseline_wave(frame);
+  flat.delay = 0;
+  expect_sound(frame, WaveFamily(frame).decode(WaveFamily(frame).encode(flat)));
+}
+
 TEST(StrokeFamily, EveryMemberIsSoundAndNotTooLong) {
   SequenceFrame frame = article_frame();
   for (const std::optional<double> acceleration : {std::optional<double>(), std::optional(0.5)}) {

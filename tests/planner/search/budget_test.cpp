@@ -66,6 +66,21 @@ TEST(Budget, OfEvaluationsDoesNotCountReports) {
   EXPECT_EQ(last.planned, 55 + 3) << "a generation may go over the budget";
 }
 
+TEST(Budget, KnowsItsCoresAfterALongSearchOverTheRig) {
+  OptimiseOptions options;
+  options.budget = 1000;
+  Budget budget(options, {});
+  double clock = 500;
+  budget.count("baseline", kReport, batch(2, 10, clock), true);
+  budget.reserve(4);
+  EXPECT_NEAR(budget.spent(), 510.0 / 975, 0.02) << "half a second of clock for each second of a run";
+  std::vector<Outcome> failed = batch(1, 10, clock);
+  failed[0].score.valid = false;
+  failed[0].score.duration = std::nan("");  // as it is read from a log
+  budget.count("smooth", "screen", failed);
+  EXPECT_TRUE(std::isfinite(budget.spent()));
+}
+
 TEST(Budget, IsSpentWhereTheReportsAloneTakeLonger) {
   OptimiseOptions options;
   options.budget = 10;

@@ -280,9 +280,39 @@ TEST(StagedSearch, ASequenceThatTheRigDoesNotFollowIsNoCandidate) {
       staged_search(frame, options_of(60), make_batch_evaluate(evaluate(true), log));
   EXPECT_EQ(followed.best.name, "uniform");
   ASSERT_EQ(unbeaten(followed.finalists).size(), 1u);
+  EXPECT_NE(followed.message.find("nothing found beats"), std::string::npos) << followed.message;
   const StagedResult none = staged_search(frame, options_of(60), make_batch_evaluate(evaluate(false), other));
   EXPECT_NE(none.message.find("no schedule was followed"), std::string::npos) << none.message;
   EXPECT_TRUE(unbeaten(none.finalists).empty());
+}
+
+TEST(StagedSearch, WhatIsFollowedBeatsWhatIsNotAndWhatFailsBeatsNothing) {
+  const SequenceFrame frame = frame_of(3, 3);
+  const std::uint64_t uniform = schedule_hash(to_schedule(frame, uniform_strokes(frame)));
+  const std::uint64_t wave = schedule_hash(to_schedule(frame, wave_strokes(frame)));
+  EvaluationLog log, other;
+  const Evaluate baselines_lag = [&](const Schedule& schedule, const std::string&) {
+    const std::uint64_t hash = schedule_hash(schedule);
+    Outcome outcome;
+    outcome.score.valid = true;
+    outcome.score.followed = hash != uniform && hash != wave;
+    outcome.score.objective = outcome.score.followed ? 22 : 20;
+    return outcome;
+  };
+  const StagedResult better = staged_search(frame, options_of(40), make_batch_evaluate(baselines_lag, log));
+  EXPECT_TRUE(better.beats_baselines);
+  EXPECT_EQ(better.best.outcome.score.objective, 22);
+  EXPECT_NE(better.message.find("does not follow the baselines"), std::string::npos) << better.message;
+  const Evaluate lags_or_fails = [&](const Schedule& schedule, const std::string&) -> Outcome {
+    if (schedule_hash(schedule) == wave) throw NotFinished("not finite");
+    Outcome outcome;
+    outcome.score.valid = true;
+    outcome.score.followed = false;
+    outcome.score.objective = 20;
+    return outcome;
+  };
+  const StagedResult lags = staged_search(frame, options_of(40), make_batch_evaluate(lags_or_fails, other));
+  EXPECT_TRUE(lags.best.outcome.score.valid) << lags.message;
 }
 
 TEST(Unbeaten, HoldsWhatNoOtherBeatsInGapOffsetAndDuration) {
