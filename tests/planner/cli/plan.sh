@@ -8,9 +8,9 @@ hash_of_best() { value "$1" /runs/best/state_hash; }
 lines() { wc -l <"$1"; }
 
 # One and two threads: the same search, the same best schedule.
-expect 0 plan "$quick" --threads 2 --json --out "$work/two"
+expect 0 plan "$quick" --budget 20 --threads 2 --json --out "$work/two"
 same_file "$work/stdout" "$work/two/result.json"
-expect 0 plan "$quick" --threads 1 --quiet --out "$work/one"
+expect 0 plan "$quick" --budget 20 --threads 1 --quiet --out "$work/one"
 [ ! -s "$work/stdout" ] && [ ! -s "$work/stderr" ] || fail "--quiet is not quiet: $(head -c 200 "$work/stdout" "$work/stderr")"
 same_file "$work/one/schedule.json" "$work/two/schedule.json"
 same_file "$work/one/schedule.csv" "$work/two/schedule.csv"
@@ -60,7 +60,7 @@ whole=$(lines "$log")
 kept=$((whole / 2))
 mkdir "$work/cut"
 { head -n "$kept" "$log"; sed -n "$((kept + 1))p" "$log" | head -c 100; } >"$work/cut/evaluations.jsonl"
-expect 0 plan "$quick" --resume --quiet --out "$work/cut"
+expect 0 plan "$quick" --budget 20 --resume --quiet --out "$work/cut"
 same_file "$work/cut/schedule.json" "$work/two/schedule.json"
 same "$(hash_of_best "$work/cut/result.json")" "$(hash_of_best "$result")" "best after resuming"
 same "$(lines "$work/cut/evaluations.jsonl")" "$whole" "lines after resuming"
@@ -68,7 +68,7 @@ same "$(head -n "$kept" "$work/cut/evaluations.jsonl" | cksum)" "$(head -n "$kep
 
 # A finished run is served from its log; without --resume a run starts anew.
 cp "$log" "$work/log"
-expect 0 plan "$quick" --resume --quiet --out "$work/two"
+expect 0 plan "$quick" --budget 20 --resume --quiet --out "$work/two"
 same_file "$log" "$work/log"
 
 # The log of another case is refused and stays as it was, and so do the other files.
