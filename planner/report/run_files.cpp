@@ -19,6 +19,7 @@
 #include "planner/report/page.hpp"
 #include "planner/report/vtu.hpp"
 #include "planner/schedule/file.hpp"
+#include "planner/search/front.hpp"
 
 namespace drapeplan {
 namespace {
@@ -232,8 +233,7 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
     report.figures.push_back(
         {"Largest gap against largest boundary offset: drapes, and the floor below which no "
          "schedule comes while fibres stretch by 1 % at most; rings are the candidates that no other one "
-         "beats "
-         "in gap, offset and duration at once",
+         "beats in gap, offset and duration at once",
          line_chart(floor_chart(front, report.rows, search))});
   }
   report.facts = {{"evaluations", fmt::to_string(search.evaluations)},

@@ -18,7 +18,6 @@ Budget::Budget(const OptimiseOptions& options, std::function<void(const Progress
 
 void Budget::count(const std::string& stage, const std::string& fidelity,
                    const std::vector<Outcome>& outcomes, bool report) {
-  const std::scoped_lock lock(mutex_);
   Kind& kind = kinds_.try_emplace(fidelity, Kind{.best = kInfinity}).first->second;
   longest_ = 0;
   if (searched_ + reported_ == 0 && !outcomes.empty())
@@ -38,7 +37,6 @@ void Budget::count(const std::string& stage, const std::string& fidelity,
 }
 
 void Budget::reserve(int runs) {
-  const std::scoped_lock lock(mutex_);
   reserved_ = reported_ + runs;
 }
 
@@ -63,14 +61,12 @@ double Budget::limit() const {
 }
 
 double Budget::spent() const {
-  const std::scoped_lock lock(mutex_);
   if (options_.evaluations > 0) return double(searched_) / options_.evaluations;
   const double whole = limit();
   return whole > 0 ? elapsed_ / whole : kInfinity;
 }
 
 int Budget::affords(double share, const std::string& fidelity) const {
-  const std::scoped_lock lock(mutex_);
   if (options_.evaluations > 0) return int(std::max(share, 0.0) * options_.evaluations);
   const auto kind = kinds_.find(fidelity);
   if (kind == kinds_.end() || !(kind->second.seconds > 0)) return 0;

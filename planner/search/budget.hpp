@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <map>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -50,7 +49,6 @@ class Budget {
 
   OptimiseOptions options_;
   std::function<void(const Progress&)> progress_;
-  mutable std::mutex mutex_;
   std::map<std::string, Kind> kinds_;  ///< per fidelity
   int searched_ = 0, reported_ = 0, reserved_ = 0;
   double longest_ = 0;  ///< of the schedules of the last batch [s]

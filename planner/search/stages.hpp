@@ -55,10 +55,6 @@ struct StagedResult {
   int failed_evaluations = 0;
 };
 
-/// Of candidates that were evaluated to their end and followed their commands: those that no other one beats,
-/// or equals, in largest gap, largest boundary offset and duration at once; by increasing gap.
-std::vector<const Candidate*> unbeaten(const std::vector<Candidate>& candidates);
-
 /// Minimises the objective over schedules.
 /// 1 baseline  both are evaluated at the reporting fidelity: what is to be beaten, and what a report costs;
 /// 2 wave      screens up to nine waves at the cheapest fidelity (`ladder`);

@@ -29,6 +29,7 @@
 #include "planner/report/charts.hpp"
 #include "planner/schedule/families.hpp"
 #include "planner/search/plan.hpp"
+#include "tests/planner/search/noise.hpp"
 
 namespace drapeplan {
 namespace {
@@ -49,15 +50,6 @@ struct Subject {
 
 /// What a method showed: the true value of the best that it was told of, after each evaluation.
 using Trace = std::vector<double>;
-
-/// Deterministic noise in [-1, 1] from the schedule.
-double noise_of(const Schedule& schedule, unsigned seed) {
-  std::uint64_t x = (schedule_hash(schedule) ^ seed) * 0x9e3779b97f4a7c15ULL;
-  x ^= x >> 29;
-  x *= 0xbf58476d1ce4e5b9ULL;
-  x ^= x >> 32;
-  return 2 * (double(x >> 11) * 0x1p-53) - 1;
-}
 
 SequenceFrame flat_frame() {
   SequenceFrame frame;
@@ -101,7 +93,8 @@ std::vector<Subject> functions() {
       };
       subject.told = [truth = subject.truth](const Schedule& s, unsigned seed) {
         constexpr double kNoise = 0.01;  // of the value, and a third of it of the start's
-        return truth(s) * (1 + kNoise * noise_of(s, seed)) + kNoise / 3 * noise_of(s, seed + 1000);
+        return truth(s) * (1 + kNoise * test::hash_noise(schedule_hash(s), seed)) +
+               kNoise / 3 * test::hash_noise(schedule_hash(s), seed + 1000);
       };
       list.push_back(std::move(subject));
     }

@@ -9,11 +9,11 @@ root=$work/checkout
 mkdir -p "$root/scripts" "$root/build/release" "$work/bin"
 cp "$source/scripts/run" "$root/scripts/"
 printf '#!/bin/sh\n' >"$root/scripts/build"
-cat >"$root/build/release/drapeplan" <<STUB
+cat >"$root/build/release/drapeplan" <<PROGRAM
 #!/bin/sh
 [ "\$2" = --help ] && [ \$# = 2 ] && exec "$program" "\$@"
 echo "\$@"
-STUB
+PROGRAM
 chmod +x "$root/scripts/build" "$root/build/release/drapeplan"
 default=$root/cases/flexdraper-5x5.json
 

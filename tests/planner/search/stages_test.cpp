@@ -14,10 +14,14 @@
 
 #include "mapping/error.hpp"
 #include "planner/drape/problem.hpp"
+#include "planner/search/front.hpp"
 #include "planner/search/interrupted.hpp"
+#include "tests/planner/search/noise.hpp"
 
 namespace drapeplan {
 namespace {
+
+using test::hash_noise;
 
 SequenceFrame frame_of(int columns, int rows) {
   SequenceFrame frame;
@@ -53,15 +57,6 @@ double deviation(const SequenceFrame& frame, const Schedule& schedule) {
   double sum = 0;
   for (const double e : error) sum += (e - mean) * (e - mean);
   return std::sqrt(sum / double(liked.size()));
-}
-
-/// Deterministic noise in [-1, 1] from the schedule alone.
-double hash_noise(std::uint64_t hash, std::uint64_t salt) {
-  std::uint64_t x = (hash ^ salt) * 0x9e3779b97f4a7c15ULL;
-  x ^= x >> 29;
-  x *= 0xbf58476d1ce4e5b9ULL;
-  x ^= x >> 32;
-  return 2 * (double(x >> 11) * 0x1p-53) - 1;
 }
 
 /// 0.1 + deviation, 1 % noise, about one in twelve fails; "screen" is biased and noisier than "report".
