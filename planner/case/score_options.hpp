@@ -18,7 +18,8 @@ struct ScoreOptions {
   double weight_max_boundary_offset = 1;
   double weight_rms_boundary_offset = 1;
   double weight_shear = 1;     ///< per degree above the locking angle
-  double weight_lag = 1;       ///< per mm of lag above the tolerance
+  /// Per mm of lag above the tolerance: a schedule that is not followed gains less than that by it.
+  double weight_lag = 3;
   double weight_duration = 0;  ///< per second
 };
 

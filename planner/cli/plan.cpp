@@ -14,7 +14,7 @@
 #include "planner/cli/process.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/report/run_files.hpp"
-#include "planner/search/front.hpp"
+#include "planner/search/finalists.hpp"
 #include "planner/search/plan.hpp"
 
 namespace drapeplan {

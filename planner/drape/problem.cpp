@@ -177,9 +177,13 @@ DrapeProblem::DrapeProblem(Case definition)
       map_(map_case(case_)),
       reach_problem_(reach_problem_of(case_, map_.targets)),
       reach_(std::make_unique<Lazy<ReachResult>>()),
-      ply_floor_(std::make_unique<Lazy<PlyFloor>>()) {
+      ply_floor_(std::make_unique<Lazy<PlyFloor>>()),
+      score_fields_(std::make_unique<Lazy<ScoreFields>>()) {
   case_.grippers = reach_problem_.rig;  // with mapped interlinks
-  for (const auto& entry : case_.fidelities) models_[entry.first] = std::make_unique<Lazy<Model>>();
+  for (const auto& entry : case_.fidelities) {
+    models_[entry.first] = std::make_unique<Lazy<Model>>();
+    samplings_[entry.first] = std::make_unique<Lazy<ScoreFields::Sampling>>();
+  }
   const bool reachable = case_.schedule.aim == Aim::reachable;
   if (reachable && !reach().converged) {
     throw NotFinished("the schedule aims at reachable places, but there are none: " + reach().status);
@@ -220,6 +224,25 @@ const PlyFloor& DrapeProblem::ply_floor() const {
 
 const Model& DrapeProblem::model(const std::string& fidelity) const {
   return models_.at(fidelity)->get([&] { return model_of(case_, case_.fidelities.at(fidelity)); });
+}
+
+const ScoreFields& DrapeProblem::score_fields() const {
+  return score_fields_->get([this] {
+    const auto coarsest = std::max_element(
+        case_.fidelities.begin(), case_.fidelities.end(),
+        [](const auto& a, const auto& b) { return a.second.mesh_size < b.second.mesh_size; });
+    return ScoreFields(model(coarsest->first).scene().mesh, *case_.mold, map_.boundary,
+                       case_.material.thickness, case_.score);
+  });
+}
+
+std::vector<float> DrapeProblem::fields_of(const Drape& drape, const std::string& fidelity) const {
+  if (!drape.score.valid) return {};
+  const Mesh& mesh = model(fidelity).scene().mesh;
+  const ScoreFields& fields = score_fields();
+  const ScoreFields::Sampling& sampling = samplings_.at(fidelity)->get([&] { return fields.sampling(mesh); });
+  const bool before = drape.other && !drape.other->before;
+  return fields.measure(mesh, sampling, before ? *drape.run.unpressed : drape.run.final, drape.score);
 }
 
 Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, int frames,

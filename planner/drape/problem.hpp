@@ -13,6 +13,7 @@
 #include "planner/case/case.hpp"
 #include "planner/drape/map_result.hpp"
 #include "planner/drape/score.hpp"
+#include "planner/drape/score_fields.hpp"
 #include "planner/reach/floor.hpp"
 #include "planner/reach/reach.hpp"
 #include "planner/schedule/strategy.hpp"
@@ -74,6 +75,11 @@ class DrapeProblem {
   /// With cells of 20 mm; takes seconds.
   [[nodiscard]] const PlyFloor& ply_floor() const;
   [[nodiscard]] const SequenceFrame& frame() const { return frame_; }
+  /// On the coarsest mesh of all fidelities. @throws WrongInput if its model cannot be built.
+  [[nodiscard]] const ScoreFields& score_fields() const;
+  /// The fields of a drape at a fidelity, as the objective sees it (before or after pressing); empty if its
+  /// score is not valid.
+  [[nodiscard]] std::vector<float> fields_of(const Drape& drape, const std::string& fidelity) const;
   /// @throws std::out_of_range if the case has no such fidelity, WrongInput if its model cannot be
   /// built.
   [[nodiscard]] const Model& model(const std::string& fidelity) const;
@@ -110,6 +116,8 @@ class DrapeProblem {
   SequenceFrame frame_;
   std::unique_ptr<Lazy<ReachResult>> reach_;
   std::unique_ptr<Lazy<PlyFloor>> ply_floor_;
+  std::unique_ptr<Lazy<ScoreFields>> score_fields_;
+  std::map<std::string, std::unique_ptr<Lazy<ScoreFields::Sampling>>> samplings_;
   std::map<std::string, std::unique_ptr<Lazy<Model>>> models_;
 };
 

@@ -21,6 +21,8 @@ constexpr double kHollowCurvature = 0.1;  // [1/m]
 /// A fibre counts as taut above this strain: some N/m in carbon fabric, what a span of 100 mm needs to carry
 /// its own weight at 1 mm of sag.
 constexpr double kTautStrain = 1e-5;  // [-]
+/// The bridging strain where the mold has no hollow: that of a fibre which is far from taut.
+constexpr double kNoHollow = -0.01;  // [-]
 /// The distance from a polyline changes by at most 1 m per m along the other one, so this bounds the error of
 /// the largest offset by half of it.
 constexpr double kEdgeSample = 0.0005;  // [m]
@@ -208,19 +210,24 @@ std::vector<double> nodal_gaps(const Snapshot& end, const Mold& mold, double thi
   return gaps;
 }
 
-std::vector<bool> bridging(const Mesh& mesh, const Snapshot& end, const Mold& mold) {
+std::vector<double> bridging_strain(const Mesh& mesh, const Snapshot& end, const Mold& mold) {
   const NodalFibres fibres = nodal_fibres(mesh, end);
-  std::vector<bool> result(mesh.rest.size(), false);
+  std::vector<double> result(mesh.rest.size(), kNoHollow);
   for (size_t node = 0; node < result.size(); ++node) {
-    const bool warp_taut = fibres.warp_strain[node] > kTautStrain;
-    const bool weft_taut = fibres.weft_strain[node] > kTautStrain;
-    if (!warp_taut && !weft_taut) continue;
     const Eigen::Vector3d foot = mold.closest(end.position[node]).foot;
-    const auto hollow = [&](const Eigen::Vector2d& direction) {
-      return mold.normal_curvature(foot.x(), foot.y(), direction) > kHollowCurvature;
+    const auto consider = [&](const Eigen::Vector2d& direction, double strain) {
+      const bool hollow = mold.normal_curvature(foot.x(), foot.y(), direction) > kHollowCurvature;
+      if (hollow) result[node] = std::max(result[node], strain - kTautStrain);
     };
-    result[node] = (warp_taut && hollow(fibres.warp[node])) || (weft_taut && hollow(fibres.weft[node]));
+    consider(fibres.warp[node], fibres.warp_strain[node]);
+    consider(fibres.weft[node], fibres.weft_strain[node]);
   }
+  return result;
+}
+
+std::vector<bool> bridging(const Mesh& mesh, const Snapshot& end, const Mold& mold) {
+  std::vector<bool> result;
+  for (const double strain : bridging_strain(mesh, end, mold)) result.push_back(strain > 0);
   return result;
 }
 

@@ -40,6 +40,9 @@ std::vector<double> nodal_gaps(const Snapshot& end, const Mold& mold, double thi
 /// fibres. A bridge that is wider than its hollow is told apart only where the mold below is hollow; the rest
 /// of it counts as a wrinkle.
 std::vector<bool> bridging(const Mesh& mesh, const Snapshot& end, const Mold& mold);
+/// The same as a number: by how much the strain of the tautest fibre over a hollow exceeds that tolerance, at
+/// least -1 %, which stands for no hollow [-]. Above zero the node bridges.
+std::vector<double> bridging_strain(const Mesh& mesh, const Snapshot& end, const Mold& mold);
 
 /// Distance between the ply's edge and the prescribed boundary.
 struct BoundaryOffset {

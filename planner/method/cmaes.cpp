@@ -3,10 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
+
+#include "planner/method/normal.hpp"
 
 namespace drapeplan {
 namespace {
@@ -46,19 +47,11 @@ CmaEs::CmaEs(const Eigen::VectorXd& x0, const CmaEsOptions& options)
   axes_ = Eigen::VectorXd::Ones(x0.size());
 }
 
-/// Box-Muller; the sine branch is dropped, so that the stream has no hidden state.
-double CmaEs::normal() {
-  constexpr double kStep = 0x1p-53;
-  const double u = (double(bits_() >> 11) + 0.5) * kStep;
-  const double v = (double(bits_() >> 11) + 0.5) * kStep;
-  return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v);
-}
-
 const Eigen::MatrixXd& CmaEs::ask() {
   unfolded_.resize(dimension(), population_);
   for (int k = 0; k < population_; ++k) {
     Eigen::VectorXd z(dimension());
-    for (int i = 0; i < dimension(); ++i) z[i] = axes_[i] * normal();
+    for (int i = 0; i < dimension(); ++i) z[i] = axes_[i] * standard_normal(bits_);
     unfolded_.col(k) = mean_ + sigma_ * (basis_ * z);
   }
   folded_ = unfolded_.unaryExpr([](double x) { return fold(x); });

@@ -46,7 +46,6 @@ class CmaEs : public Method {
   [[nodiscard]] std::string stop_reason() const override;
 
  private:
-  double normal();
   void recombine(const std::vector<int>& selected);
   void adapt(const std::vector<int>& selected, const Eigen::VectorXd& old_mean);
   void decompose();

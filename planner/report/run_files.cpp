@@ -19,7 +19,7 @@
 #include "planner/report/page.hpp"
 #include "planner/report/vtu.hpp"
 #include "planner/schedule/file.hpp"
-#include "planner/search/front.hpp"
+#include "planner/search/finalists.hpp"
 
 namespace drapeplan {
 namespace {

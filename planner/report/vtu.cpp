@@ -11,6 +11,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "planner/base/base64.hpp"
 #include "planner/base/text.hpp"
 
 namespace drapeplan {
@@ -19,22 +20,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the header of the files says LittleEndian");
 
 constexpr std::uint8_t kVtkQuad = 9;  // a cell type of VTK
-
-/// RFC 4648, with padding.
-std::string base64(const std::vector<unsigned char>& bytes) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (size_t k = 0; k < bytes.size(); k += 3) {
-    std::uint32_t group = 0;
-    for (size_t b = 0; b < 3; ++b) group = group << 8 | (k + b < bytes.size() ? bytes[k + b] : 0u);
-    for (size_t digit = 0; digit < 4; ++digit) {
-      const bool padding = k + digit > bytes.size();
-      text += padding ? '=' : kDigits[group >> (18 - 6 * digit) & 63u];
-    }
-  }
-  return text;
-}
 
 /// A data array: inline binary, that is base64 of an 8-byte length and the values.
 template <class Value>

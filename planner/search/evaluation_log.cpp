@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <limits>
@@ -14,6 +16,7 @@
 
 #include "fem/core/hash.hpp"
 #include "mapping/error.hpp"
+#include "planner/base/base64.hpp"
 #include "planner/base/json_text.hpp"
 #include "planner/drape/result_fields.hpp"
 
@@ -52,8 +55,26 @@ json to_json(const Evaluation& e) {
             {"summary", summary_json(e.outcome.summary)}};
   line["score"] = score_json(e.outcome.score);  // the one that the objective takes
   if (const auto& other = e.outcome.other) line[other->key()] = score_json(other->score);
+  const std::vector<float>& fields = e.outcome.fields;
+  if (!fields.empty()) {
+    std::vector<unsigned char> bytes(fields.size() * sizeof(float));
+    std::memcpy(bytes.data(), fields.data(), bytes.size());
+    line["fields"] = base64(bytes);
+  }
   return line;
 }
+
+/// As to_json writes them: 32-bit floats, the lowest byte first.
+std::vector<float> fields_from(const json& text) {
+  const auto bytes = bytes_of_base64(text.get_ref<const std::string&>());
+  if (!bytes || bytes->size() % sizeof(float) != 0)
+    throw std::invalid_argument("fields: not base64 of floats");
+  std::vector<float> fields(bytes->size() / sizeof(float));
+  std::memcpy(fields.data(), bytes->data(), bytes->size());
+  return fields;
+}
+
+static_assert(std::endian::native == std::endian::little, "fields are written as they lie in memory");
 
 constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
 
@@ -77,6 +98,7 @@ Evaluation from_json(const json& j) {
   e.outcome.elapsed = number_or(j.at("elapsed_seconds"), 0);
   const json& summary = j.at("summary");
   e.outcome.score = score_from(j.at("score"));
+  if (j.contains("fields")) e.outcome.fields = fields_from(j.at("fields"));
   for (const bool before : {true, false}) {
     OtherScore other{before, {}};
     if (!j.contains(other.key())) continue;

@@ -25,9 +25,10 @@ struct Outcome {
   Score score;                      ///< valid == false: failed, for the reason given there
   std::optional<OtherScore> other;  ///< where the ply was pressed
   RunSummary summary;
-  double wall_seconds = 0;  ///< [s]
-  double elapsed = 0;       ///< on the log's clock when it ended [s]
-  bool cached = false;      ///< served without a run
+  std::vector<float> fields = {};  ///< of ScoreFields; empty where nobody learns from them
+  double wall_seconds = 0;         ///< [s]
+  double elapsed = 0;              ///< on the log's clock when it ended [s]
+  bool cached = false;             ///< served without a run
 };
 
 /// What a search minimises: the objective; infinite if the run failed.
@@ -51,8 +52,8 @@ std::uint64_t candidate_hash(std::uint64_t design, const Schedule& schedule);
 
 /// Append-only file of JSON lines. The first names the format and the case; each other one is an evaluation,
 /// flushed when written. Thread-safe. Resume = open the same file again: known (schedule, fidelity) pairs are
-/// then served from it. In memory one outcome is kept per evaluation, some hundred bytes: its score and of
-/// its run's summary only what the planner shows (status, steps, times, energies, hash).
+/// then served from it. In memory one outcome is kept per evaluation, some kilobytes: its score and its
+/// fields, and of its run's summary only what the planner shows (status, steps, times, energies, hash).
 class EvaluationLog {
  public:
   /// In memory only.

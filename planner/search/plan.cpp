@@ -121,6 +121,7 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
     const bool report = fidelity == kReport;
     Drape drape = problem.run(schedule, fidelity, report ? kFrames : 0);
     Outcome outcome = outcome_of(drape);
+    outcome.fields = problem.fields_of(drape, fidelity);
     if (report) reported.offer(schedule_hash(schedule), std::move(drape));
     return outcome;
   };
@@ -129,6 +130,9 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
   staged.threads = options.threads;
   if (result.design) staged.wave = result.design->wave;
   staged.ladder = plan_ladder(problem.definition());
+  const ScoreFields& fields = problem.score_fields();
+  staged.objective_near = [&fields](const Eigen::VectorXd& around) { return fields.objective_near(around); };
+  staged.field_scale = fields.scale();
   const BatchEvaluate batch = make_batch_evaluate(evaluate, log, options.threads, design, options.stop);
   result.search = staged_search(problem.frame(), staged, batch, progress);
   const StagedResult& search = result.search;

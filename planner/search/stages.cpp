@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -13,8 +12,8 @@
 #include "planner/base/statistics.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/method/nlopt.hpp"
-#include "planner/method/restarts.hpp"
 #include "planner/schedule/families.hpp"
+#include "planner/search/finalists.hpp"
 #include "planner/search/interrupted.hpp"
 
 namespace drapeplan {
@@ -26,13 +25,20 @@ constexpr double kDifferentTime = 0.05;     // [s]
 constexpr double kDifferentHeight = 0.001;  // [m]
 /// NLopt searches side by side, from as many of the screened waves.
 constexpr int kLocalSearches = 2;
-/// First step of CMA-ES in units of the box's edge: small, so that what the local search has found is kept.
-constexpr double kGripperSigma = 0.05;
-/// Shares of the budget at which parts of the search end: the local search over smooth strokes, CMA-ES at the
-/// cheapest fidelity (in so many equal parts, with a check after each), and at the finest.
-constexpr double kSmoothEnd = 0.15, kScreenEnd = 0.6, kGripperEnd = 1;
+/// Shares of the budget after the waves at which parts of the search end: COBYLA and the composite search
+/// over smooth strokes, and the latter over all grippers at the cheaper fidelities (each in so many equal
+/// parts, with a check after each).
+constexpr double kCobylaEnd = 0.08, kSmoothEnd = 0.16, kScreenEnd = 0.5;
 constexpr int kScreenParts = 3;
-/// Spearman's rank correlation of one generation at two fidelities below which the cheaper one is left.
+/// Share of a budget of time that is kept for reports, if that is more than the finalists need; so many are
+/// evaluated at a time.
+constexpr double kReportShare = 0.15;
+constexpr int kReportBatch = 2;
+/// Finalists but the first lag by at most this share of what the first one lags by.
+constexpr double kLessLag = 0.75;
+/// So many schedules are compared at two fidelities; where Spearman's correlation of their ranks is below,
+/// the cheaper one is left. They are spread over the ranks of the last so many.
+constexpr size_t kCompared = 8, kComparedOf = 60;
 constexpr double kTrustedCorrelation = 0.7;
 
 /// A candidate before it has a fidelity: strokes and where they come from. One is kept per evaluation, so it
@@ -42,6 +48,7 @@ struct Trial {
   Strokes strokes;
   double objective = kInfinity;  ///< infinite: failed
   bool followed = true;
+  double lag = 0;  ///< [m]
 };
 
 bool better(const Trial& a, const Trial& b) {
@@ -54,32 +61,36 @@ bool ranks_before(const Trial& a, const Trial& b) {
   if (std::isfinite(a.objective) != std::isfinite(b.objective)) return std::isfinite(a.objective);
   return a.followed != b.followed ? a.followed : better(a, b);
 }
-Trial rank_of(const Outcome& outcome) {
-  return {.name = {}, .strokes = {}, .objective = value_of(outcome), .followed = outcome.score.followed};
-}
-bool ranks_before(const Outcome& a, const Outcome& b) {
-  return ranks_before(rank_of(a), rank_of(b));
-}
 
 class StagedSearch {
  public:
   StagedSearch(const SequenceFrame& frame, const StagedOptions& options, const BatchEvaluate& evaluate,
                const std::function<void(const Progress&)>& progress)
-      : frame_(frame), options_(options), evaluate_(evaluate), budget_(options.optimise, progress) {}
+      : frame_(frame),
+        options_(options),
+        evaluate_(evaluate),
+        budget_(options.optimise, progress),
+        smooth_(frame, {}),
+        grippers_(frame, {.start = Spread::each, .height = Spread::each}),
+        search_(options.objective_near, options.field_scale,
+                {.seed = options.optimise.seed, .threads = options.threads}) {}
 
   StagedResult run() {
     compare({{"uniform", uniform_strokes(frame_)}, {"wave", wave_strokes(frame_)}}, "baseline");
     result_.uniform = result_.finalists[0];
     result_.wave = result_.finalists[1];
-    budget_.reserve(options_.optimise.finalists + kCentres);
+    reports_ = options_.optimise.finalists + kExpected;
+    if (options_.optimise.evaluations == 0)
+      reports_ = std::max(reports_, budget_.affords(kReportShare, kReport));
+    budget_.reserve(reports_);
     try {
       search_waves();
       if (std::isfinite(best_at(options_.ladder.front())->objective)) {
         search_smooth();
         search_grippers();
       }
-      compare(pick_finalists(), "report");
-      conclude();
+      search_reports();
+      conclude(result_);
     } catch (const Interrupted&) {
       conclude_early();
     }
@@ -87,16 +98,20 @@ class StagedSearch {
   }
 
  private:
-  using Decode = std::function<Strokes(const Eigen::VectorXd&)>;
-  static constexpr int kCentres = 1;  ///< of the search distribution, which no lucky value chose
+  static constexpr int kExpected = 1;  ///< one more finalist: what the model expects to be best
 
   void search_waves();
   void search_smooth();
-  void climb(Method& search, const Decode& decode, size_t rung,
-             const std::function<void(double, size_t)>& search_until);
   void search_grippers();
-  bool advance(Method& method, const Decode& decode, const std::vector<std::string>& fidelities,
-               const std::string& stage);
+  void search_until(double share, const StrokeFamily& family, size_t rung, const std::string& stage);
+  void climb(size_t rung);
+  double compare_fidelities(size_t rung);
+  void try_points(const Eigen::MatrixXd& points, const StrokeFamily& family, size_t rung,
+                  const std::string& stage, Eigen::VectorXd* values = nullptr);
+  SearchSpace space_of(const StrokeFamily& family) const;
+  int level_of(const std::string& fidelity) const;
+  double spent() const { return (budget_.spent() - begin_) / (1 - begin_); }
+  void search_reports();
   void compare(std::vector<Trial> trials, const std::string& stage);
 
   Schedule schedule_of(const Trial& trial) const { return to_schedule(frame_, trial.strokes); }
@@ -104,9 +119,8 @@ class StagedSearch {
                                 const std::string& stage, bool report = false);
   void record(const Trial& trial, const std::string& fidelity, const std::string& stage);
   std::vector<Trial> screen_waves();
-  std::vector<Trial> pick_finalists() const;
+  std::vector<Trial> pick_finalists(int count) const;
   const Trial* best_at(const std::string& fidelity) const;
-  void conclude();
   void conclude_early();
 
   const SequenceFrame& frame_;
@@ -114,8 +128,10 @@ class StagedSearch {
   const BatchEvaluate& evaluate_;
   Budget budget_;
   std::map<std::string, std::vector<Trial>> trials_;  // per fidelity, in the order of evaluation
-  std::vector<Trial> centres_;                        // last means of CMA-ES
-  double correlation_ = 1;                            // of the last generation at two fidelities
+  double begin_ = 0;                                  // share of the budget that was spent on the waves
+  StrokeFamily smooth_, grippers_;                    // places of the search are those of the latter
+  CompositeSearch search_;
+  int reports_ = 0;  ///< that are made in the end
   std::map<std::string, double> best_;
   std::set<std::pair<std::uint64_t, std::string>> seen_;
   StagedResult result_;
@@ -130,7 +146,10 @@ std::vector<Outcome> StagedSearch::evaluate(std::vector<Trial>& trials, const st
   for (size_t k = 0; k < trials.size(); ++k) {
     trials[k].objective = value_of(outcomes[k]);
     trials[k].followed = outcomes[k].score.followed;
+    trials[k].lag = outcomes[k].score.max_lag;
     record(trials[k], fidelity, stage);
+    search_.observe(grippers_.encode(trials[k].strokes), level_of(fidelity), outcomes[k].fields,
+                    trials[k].objective);
   }
   return outcomes;
 }
@@ -186,6 +205,7 @@ std::vector<Trial> StagedSearch::screen_waves() {
 void StagedSearch::search_waves() {
   std::vector<Trial> screened = screen_waves();
   evaluate(screened, options_.ladder.front(), "wave");
+  begin_ = std::min(budget_.spent(), 0.99);
 }
 
 const Trial* StagedSearch::best_at(const std::string& fidelity) const {
@@ -194,77 +214,88 @@ const Trial* StagedSearch::best_at(const std::string& fidelity) const {
   return &*std::min_element(list->second.begin(), list->second.end(), better);
 }
 
-/// One batch of a method at one fidelity or several, the last of which is told; false if it has none left.
-bool StagedSearch::advance(Method& method, const Decode& decode, const std::vector<std::string>& fidelities,
-                           const std::string& stage) {
-  if (!method.stop_reason().empty()) return false;
-  const Eigen::MatrixXd x = method.ask();
-  if (x.cols() == 0) return false;
-  std::vector<Trial> trials;
-  for (Eigen::Index k = 0; k < x.cols(); ++k) {
-    const size_t number = result_.history.size() + size_t(k) + 1;
-    trials.push_back({fmt::format("{} {}", stage, number), decode(x.col(k))});
-  }
-  std::vector<double> before, values;
-  for (const std::string& fidelity : fidelities) {
-    evaluate(trials, fidelity, stage);
-    before = std::move(values);
-    values.clear();
-    for (const Trial& trial : trials) values.push_back(trial.objective);
-  }
-  if (!before.empty()) correlation_ = spearman(before, values);
-  method.tell(Eigen::Map<const Eigen::VectorXd>(values.data(), x.cols()));
-  return true;
+SearchSpace StagedSearch::space_of(const StrokeFamily& family) const {
+  return {family.dimension(),
+          [&](const Eigen::VectorXd& point) { return grippers_.encode(family.decode(point)); },
+          [&](const Eigen::VectorXd& place) { return family.encode(grippers_.decode(place)); }};
 }
 
-/// COBYLA from the best waves: at the start, a hundred evaluations of it bring what CMA-ES finds with four
-/// hundred.
+void StagedSearch::try_points(const Eigen::MatrixXd& points, const StrokeFamily& family, size_t rung,
+                              const std::string& stage, Eigen::VectorXd* values) {
+  std::vector<Trial> trials;
+  for (Eigen::Index k = 0; k < points.cols(); ++k) {
+    const size_t number = result_.history.size() + size_t(k) + 1;
+    trials.push_back({fmt::format("{} {}", stage, number), family.decode(points.col(k))});
+  }
+  evaluate(trials, options_.ladder[rung], stage);
+  if (values == nullptr) return;
+  values->resize(points.cols());
+  for (Eigen::Index k = 0; k < points.cols(); ++k) (*values)[k] = trials[size_t(k)].objective;
+}
+
+/// COBYLA from the best waves is ahead of all others at first; then the model has seen enough.
 void StagedSearch::search_smooth() {
   const std::string& fidelity = options_.ladder.front();
-  const StrokeFamily family(frame_, {});
   std::vector<Trial> waves = trials_[fidelity];
   std::stable_sort(waves.begin(), waves.end(), better);
-  const int budget = budget_.affords(kSmoothEnd - budget_.spent(), fidelity);
+  const int budget = budget_.affords(kCobylaEnd * (1 - begin_), fidelity);
   const int count = std::min(kLocalSearches, int(waves.size()));
   std::vector<NloptStart> starts;
   for (int k = 0; k < count; ++k) {
-    starts.push_back({.x = family.encode(waves[size_t(k)].strokes), .evaluations = (budget + k) / count});
+    starts.push_back({.x = smooth_.encode(waves[size_t(k)].strokes), .evaluations = (budget + k) / count});
   }
-  NloptSearches search(starts, options_.optimise.seed);
-  const Decode decode = [&](const Eigen::VectorXd& x) { return family.decode(x); };
-  while (budget_.spent() < kSmoothEnd && advance(search, decode, {fidelity}, "smooth")) {
+  NloptSearches cobyla(starts, options_.optimise.seed);
+  while (spent() < kCobylaEnd && cobyla.stop_reason().empty()) {
+    const Eigen::MatrixXd points = cobyla.ask();
+    if (points.cols() == 0) break;
+    Eigen::VectorXd values;
+    try_points(points, smooth_, 0, "smooth", &values);
+    cobyla.tell(values);
+  }
+  search_until(kSmoothEnd, smooth_, 0, "smooth");
+}
+
+void StagedSearch::search_until(double share, const StrokeFamily& family, size_t rung,
+                                const std::string& stage) {
+  search_.set_level(int(rung));
+  while (spent() < share && search_.ready()) {
+    try_points(search_.ask(space_of(family)), family, rung, stage);
+    search_.end_batch();
   }
 }
 
 void StagedSearch::search_grippers() {
-  const StrokeFamily family(frame_, {.start = Spread::each, .height = Spread::each});
-  RestartedCmaEs search(family.encode(best_at(options_.ladder.front())->strokes),
-                        {.sigma0 = kGripperSigma, .seed = options_.optimise.seed});
-  const Decode decode = [&](const Eigen::VectorXd& x) { return family.decode(x); };
-  const auto search_until = [&](double end, size_t rung) {
-    while (budget_.spent() < end && advance(search, decode, {options_.ladder[rung]}, "gripper")) {
-    }
-  };
   const size_t finest = options_.ladder.size() - 1;
-  for (size_t rung = 0; rung < finest; ++rung) {
-    climb(search, decode, rung, search_until);
-    search.forget_values();
-  }
-  search_until(kGripperEnd, finest);
-  if (search.generations() > 0) centres_.push_back({"gripper centre", family.decode(search.mean())});
+  for (size_t rung = 0; rung < finest; ++rung) climb(rung);
+  search_until(1, grippers_, finest, "gripper");
 }
 
-/// Searches at one fidelity until its ranks are no longer those of the next one, or its share is spent. Where
-/// they are compared, one generation is evaluated at both, and the finer values are told.
-void StagedSearch::climb(Method& search, const Decode& decode, size_t rung,
-                         const std::function<void(double, size_t)>& search_until) {
-  const std::string &here = options_.ladder[rung], &next = options_.ladder[rung + 1];
-  const double begin = budget_.spent();
+/// Searches at one fidelity until its ranks are no longer those of the next one, or its share is spent.
+void StagedSearch::climb(size_t rung) {
+  const double begin = spent();
   for (int part = 1; part <= kScreenParts; ++part) {
-    search_until(begin + (kScreenEnd - begin) * part / kScreenParts, rung);
-    if (budget_.spent() >= kScreenEnd || !advance(search, decode, {here, next}, "gripper")) return;
-    if (!(correlation_ >= kTrustedCorrelation)) return;  // one that is not defined is not trusted
+    search_until(begin + (kScreenEnd - begin) * part / kScreenParts, grippers_, rung, "gripper");
+    // A correlation that is not defined is not trusted.
+    if (!(compare_fidelities(rung) >= kTrustedCorrelation)) return;
   }
+}
+
+/// Evaluates some of the better recent schedules of a fidelity at the next one, too.
+/// @return Spearman's correlation of their ranks; NaN if there is none.
+double StagedSearch::compare_fidelities(size_t rung) {
+  const std::vector<Trial>& here = trials_[options_.ladder[rung]];
+  std::vector<Trial> recent(here.end() - std::ptrdiff_t(std::min(here.size(), kComparedOf)), here.end());
+  std::stable_sort(recent.begin(), recent.end(), better);
+  const size_t half = (recent.size() + 1) / 2, count = std::min(half, kCompared);
+  std::vector<Trial> chosen;
+  std::vector<double> before, after;
+  for (size_t k = 0; k < count; ++k) {
+    chosen.push_back(recent[count > 1 ? k * (half - 1) / (count - 1) : 0]);
+    before.push_back(chosen.back().objective);
+  }
+  evaluate(chosen, options_.ladder[rung + 1], "gripper");
+  for (const Trial& trial : chosen) after.push_back(trial.objective);
+  return spearman(before, after);
 }
 
 bool nearly_equal(const Schedule& a, const Schedule& b) {
@@ -278,9 +309,9 @@ bool nearly_equal(const Schedule& a, const Schedule& b) {
   return true;
 }
 
-/// The best few that differ from each other and from the baselines, of the finest fidelity that has some;
-/// and the centres of the search distributions.
-std::vector<Trial> StagedSearch::pick_finalists() const {
+/// The best few that differ from each other and from the baselines, of the finest fidelity that has some. All
+/// but the first lag less: at the next fidelity joints may lag more, and then none would be followed.
+std::vector<Trial> StagedSearch::pick_finalists(int count) const {
   std::vector<Trial> finalists;
   std::vector<Schedule> schedules{result_.uniform.schedule, result_.wave.schedule};
   const auto add_if_new = [&](const Trial& trial) {
@@ -291,7 +322,7 @@ std::vector<Trial> StagedSearch::pick_finalists() const {
     finalists.push_back(trial);
     schedules.push_back(std::move(schedule));
   };
-  const auto wanted = size_t(std::max(options_.optimise.finalists, 0));
+  const auto wanted = size_t(std::max(count, 0));
   for (auto fidelity = options_.ladder.rbegin(); fidelity != options_.ladder.rend(); ++fidelity) {
     const auto list = trials_.find(*fidelity);
     if (list == trials_.end()) continue;
@@ -299,13 +330,36 @@ std::vector<Trial> StagedSearch::pick_finalists() const {
     for (const Trial& trial : list->second) sorted.push_back(&trial);
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const Trial* a, const Trial* b) { return ranks_before(*a, *b); });
-    for (const Trial* trial : sorted) {
-      if (finalists.size() >= wanted || !std::isfinite(trial->objective)) break;
-      add_if_new(*trial);
-    }
+    const auto add_all = [&](double lag) {
+      for (const Trial* trial : sorted) {
+        if (finalists.size() >= wanted || !std::isfinite(trial->objective)) break;
+        if (finalists.empty() || trial->lag <= lag) add_if_new(*trial);
+      }
+    };
+    add_all(sorted.empty() ? 0 : kLessLag * sorted.front()->lag);
+    add_all(kInfinity);
   }
-  for (const Trial& trial : centres_) add_if_new(trial);
   return finalists;
+}
+
+/// The reporting fidelity is the last step of the ladder: first the best of the search are evaluated there,
+/// then what the model, which has seen these, expects to be best there.
+void StagedSearch::search_reports() {
+  compare(pick_finalists(std::min(reports_, kReportBatch)), "report");
+  search_.set_level(level_of(kReport));
+  for (int left = reports_ - kReportBatch; left > 0 && search_.ready(); left -= kReportBatch) {
+    const Eigen::MatrixXd points = search_.ask(space_of(grippers_), std::min(left, kReportBatch));
+    std::vector<Trial> trials;
+    for (Eigen::Index k = 0; k < points.cols(); ++k)
+      trials.push_back({fmt::format("report {}", result_.history.size() + size_t(k) + 1),
+                        grippers_.decode(points.col(k))});
+    compare(std::move(trials), "report");
+    search_.end_batch();
+  }
+}
+
+int StagedSearch::level_of(const std::string& fidelity) const {
+  return int(std::find(options_.ladder.begin(), options_.ladder.end(), fidelity) - options_.ladder.begin());
 }
 
 void StagedSearch::compare(std::vector<Trial> trials, const std::string& stage) {
@@ -314,43 +368,8 @@ void StagedSearch::compare(std::vector<Trial> trials, const std::string& stage) 
     result_.finalists.push_back({trials[k].name, schedule_of(trials[k]), outcomes[k]});
 }
 
-void StagedSearch::conclude() {
-  std::stable_sort(result_.finalists.begin(), result_.finalists.end(),
-                   [](const Candidate& a, const Candidate& b) { return ranks_before(a.outcome, b.outcome); });
-  result_.best = result_.finalists.front();
-  result_.best_fidelity = kReport;
-  const Outcome& better_baseline = ranks_before(result_.wave.outcome, result_.uniform.outcome)
-                                       ? result_.wave.outcome
-                                       : result_.uniform.outcome;
-  const double baseline = value_of(better_baseline), best = value_of(result_.best.outcome);
-  result_.beats_baselines = ranks_before(result_.best.outcome, better_baseline);
-  const std::string& name = result_.best.name;
-  if (!std::isfinite(best)) {
-    result_.message = fmt::format("no schedule could be evaluated at fidelity \"{}\"", kReport);
-  } else if (!std::isfinite(baseline)) {
-    result_.message =
-        fmt::format("both baselines failed; the best schedule, {}, has an objective of {:.6g}", name, best);
-  } else if (result_.beats_baselines && best >= baseline) {
-    result_.message = fmt::format(
-        "the optimised sequence (candidate \"{}\") has an objective of {:.4g}; the rig does not follow the "
-        "baselines, of which the better one has {:.4g}",
-        name, best, baseline);
-  } else if (result_.beats_baselines) {
-    result_.message = fmt::format(
-        "the optimised sequence (candidate \"{}\") has an objective of {:.4g}, {:.1f} % below the better "
-        "baseline's {:.4g}",
-        name, best, 100 * (baseline - best) / std::abs(baseline), baseline);
-  } else {
-    result_.message = fmt::format(
-        "nothing found beats the baselines at the reporting fidelity: {} stays the best, objective {:.6g}",
-        name, best);
-  }
-  if (std::isfinite(best) && !result_.best.outcome.score.followed)
-    result_.message += "; no schedule was followed by the rig within the tolerance of lag";
-}
-
 void StagedSearch::conclude_early() {
-  conclude();
+  conclude(result_);
   result_.interrupted = true;
   for (auto fidelity = options_.ladder.rbegin(); fidelity != options_.ladder.rend(); ++fidelity) {
     const std::vector<Trial>& list = trials_[*fidelity];

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/method/composite.hpp"
 #include "planner/schedule/strategy.hpp"
 #include "planner/search/batch_evaluate.hpp"
 #include "planner/search/budget.hpp"
@@ -18,6 +19,10 @@ struct StagedOptions {
   OptimiseOptions optimise;
   /// Fidelities that are searched, cheapest first; finalists are compared at kReport.
   std::vector<std::string> ladder = {"screen"};
+  /// What an objective is made of, and by how much fields differ (see ScoreFields); without, the search
+  /// learns from objectives alone.
+  ObjectiveNear objective_near = {};
+  Eigen::VectorXd field_scale = {};
   Eigen::VectorXd wave = {};  ///< one more wave to start from, in coordinates; empty: none
   int threads = 0;            ///< 0: OpenMP's default; does not change the result
 };
@@ -58,12 +63,15 @@ struct StagedResult {
 /// Minimises the objective over schedules.
 /// 1 baseline  both are evaluated at the reporting fidelity: what is to be beaten, and what a report costs;
 /// 2 wave      screens up to nine waves at the cheapest fidelity (`ladder`);
-/// 3 smooth    NLopt's COBYLA over StrokeFamily with smooth starts and heights, from the best waves;
-/// 4 gripper   CMA-ES over a start and a height of each gripper, with a small first step, from the best of
-///             that. It climbs from the cheapest fidelity to the finest: when the ranks of a generation at
-///             both no longer agree, or when the share of the cheaper one is spent;
-/// 5 report    the best few different schedules and the centre of the last search distribution are evaluated
-///             at the reporting fidelity; the best there wins.
+/// 3 smooth    NLopt's COBYLA over StrokeFamily with smooth starts and heights, from the best waves; then
+///             CompositeSearch over the same, which knows all evaluations so far;
+/// 4 gripper   CompositeSearch over a start and a height of each gripper. It climbs from the cheapest
+/// fidelity
+///             to the finest, when the ranks of a few schedules at both no longer agree, or when the share of
+///             the cheaper one is spent; what it knows from the cheaper ones it keeps;
+/// 5 report    the best of that and the best that lags less, then what the model expects to be best there,
+/// are
+///             evaluated at the reporting fidelity; the best there wins.
 /// The result depends on frame, options and evaluate only: not on threads, nor on what was served from a log.
 /// Where the budget is a time, it depends on the clock of the log, too.
 /// @param evaluate  safe to call concurrently. Once it throws Interrupted, the search ends with what it has.

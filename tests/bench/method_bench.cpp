@@ -40,12 +40,19 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// 2009).
 constexpr double kSolved = 0.1;
 
+struct Seen {
+  double value = 0;  ///< with its noise; infinite: failed
+  std::vector<float> fields;
+};
+
 /// What is searched: schedules of a frame, and what they are worth.
 struct Subject {
   std::string name;
   SequenceFrame frame;
-  std::function<double(const Schedule&, unsigned seed)> told;  ///< with its noise; infinite: failed
-  std::function<double(const Schedule&)> truth;
+  std::function<Seen(const Schedule&, unsigned seed)> told;
+  std::function<double(const Schedule&)> truth;  ///< empty: what is told
+  ObjectiveNear objective_near;                  ///< of the fields
+  Eigen::VectorXd field_scale;
 };
 
 /// What a method showed: the true value of the best that it was told of, after each evaluation.
@@ -85,17 +92,29 @@ std::vector<Subject> functions() {
   std::vector<Subject> list;
   for (const double rough : {0.0, 0.5}) {
     for (const auto& [name, form] : forms) {
-      Subject subject{rough > 0 ? name + ", rough" : name, flat_frame(), {}, {}};
+      Subject subject{rough > 0 ? name + ", rough" : name, flat_frame(), {}, {}, {}, {}};
       const SequenceFrame frame = subject.frame;
       const double scale = form(deviations(frame, to_schedule(frame, uniform_strokes(frame)), rough));
       subject.truth = [=, form = form](const Schedule& s) {
         return form(deviations(frame, s, rough)) / scale;
       };
-      subject.told = [truth = subject.truth](const Schedule& s, unsigned seed) {
+      subject.told = [=, truth = subject.truth](const Schedule& s, unsigned seed) {
         constexpr double kNoise = 0.01;  // of the value, and a third of it of the start's
-        return truth(s) * (1 + kNoise * test::hash_noise(schedule_hash(s), seed)) +
-               kNoise / 3 * test::hash_noise(schedule_hash(s), seed + 1000);
+        const std::uint64_t hash = schedule_hash(s);
+        Seen seen{truth(s) * (1 + kNoise * test::hash_noise(hash, seed)) +
+                      kNoise / 3 * test::hash_noise(hash, seed + 1000),
+                  {}};
+        constexpr double kFieldNoise = 0.3;  // of a deviation's unit
+        const Eigen::VectorXd d = deviations(frame, s, rough);
+        for (Eigen::Index k = 0; k < d.size(); ++k)
+          seen.fields.push_back(
+              float(d[k] + kFieldNoise * test::hash_noise(hash, seed + unsigned(k) + 2000)));
+        return seen;
       };
+      subject.objective_near = [=, form = form](const Eigen::VectorXd&) {
+        return [=](const Eigen::VectorXd& d) { return form(d) / scale; };
+      };
+      subject.field_scale = Eigen::VectorXd::Ones(2 * frame.rig.count());
       list.push_back(std::move(subject));
     }
   }
@@ -108,12 +127,18 @@ Subject case_subject(const std::string& file) {
   const auto problem = std::make_shared<DrapeProblem>(std::move(reading.definition));
   const std::string fidelity = plan_ladder(problem->definition()).front();
   static_cast<void>(problem->model(fidelity));
-  const auto truth = [problem, fidelity](const Schedule& schedule) {
-    const Score score = problem->run(schedule, fidelity).score;
-    return score.valid ? score.objective : kInfinity;
+  const auto told = [problem, fidelity](const Schedule& schedule, unsigned) {
+    const Drape drape = problem->run(schedule, fidelity);
+    return Seen{drape.score.valid ? drape.score.objective : kInfinity, problem->fields_of(drape, fidelity)};
   };
-  return {problem->definition().name, problem->frame(),
-          [truth](const Schedule& s, unsigned) { return truth(s); }, truth};
+  const ScoreFields& fields = problem->score_fields();
+  return {
+      .name = problem->definition().name,
+      .frame = problem->frame(),
+      .told = told,
+      .truth = {},
+      .objective_near = [&fields](const Eigen::VectorXd& around) { return fields.objective_near(around); },
+      .field_scale = fields.scale()};
 }
 
 /// Keeps the trace of whatever evaluates through it.
@@ -122,12 +147,13 @@ class Recorder {
   Recorder(const Subject& subject, unsigned seed, int budget)
       : subject_(subject), seed_(seed), budget_(budget) {}
 
-  double evaluate(const Schedule& schedule) {
-    const auto [known, fresh] = known_.try_emplace(schedule_hash(schedule), 0.0);
+  const Seen& evaluate(const Schedule& schedule) {
+    const auto [known, fresh] = known_.try_emplace(schedule_hash(schedule));
     if (!fresh) return known->second;
     known->second = subject_.told(schedule, seed_);
+    const double value = known->second.value;
     if (left() > 0) {
-      if (known->second < best_) best_ = known->second, shown_ = subject_.truth(schedule);
+      if (value < best_) best_ = value, shown_ = subject_.truth ? subject_.truth(schedule) : value;
       trace_.push_back(shown_);
     }
     return known->second;
@@ -143,7 +169,7 @@ class Recorder {
   const Subject& subject_;
   unsigned seed_;
   int budget_;
-  std::map<std::uint64_t, double> known_;
+  std::map<std::uint64_t, Seen> known_;
   double best_ = kInfinity, shown_ = kInfinity;
   Trace trace_;
 };
@@ -185,9 +211,12 @@ Trace run_method(const Subject& subject, const std::string& name, unsigned seed,
     options.optimise.seed = seed;
     options.wave = wave;
     options.threads = 1;
+    options.objective_near = subject.objective_near;
+    options.field_scale = subject.field_scale;
     const Evaluate evaluate = [&](const Schedule& schedule, const std::string& fidelity) {
       Outcome outcome;
-      outcome.score.objective = fidelity == kReport ? 1 : recorder.evaluate(schedule);
+      if (fidelity != kReport) outcome.fields = recorder.evaluate(schedule).fields;
+      outcome.score.objective = fidelity == kReport ? 1 : recorder.evaluate(schedule).value;
       outcome.score.valid = std::isfinite(outcome.score.objective);
       return outcome;
     };
@@ -215,7 +244,7 @@ Trace run_method(const Subject& subject, const std::string& name, unsigned seed,
     if (x.cols() == 0) break;
     Eigen::VectorXd values(x.cols());
     for (Eigen::Index k = 0; k < x.cols(); ++k)
-      values[k] = recorder.evaluate(to_schedule(subject.frame, family.decode(x.col(k))));
+      values[k] = recorder.evaluate(to_schedule(subject.frame, family.decode(x.col(k)))).value;
     method->tell(values);
   }
   return recorder.trace();

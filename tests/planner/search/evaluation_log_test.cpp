@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -64,6 +65,16 @@ TEST(ScheduleHash, SeesEveryNumberButNotTheSignOfZero) {
   EXPECT_NE(schedule_hash(a), schedule_hash(b));
   EXPECT_EQ(schedule_hash(schedule_ending_at(0.0)), schedule_hash(schedule_ending_at(-0.0)));
   EXPECT_NE(schedule_hash({{{{0, 1}}, {{0, 1}}}, 0}), schedule_hash({{{{0, 1}, {0, 1}}}, 0}));
+}
+
+TEST_F(EvaluationLogFile, KeepsFieldsToTheBit) {
+  Outcome outcome = outcome_of(0.1);
+  outcome.fields = {1.0f / 3, -0.0f, 1e-30f, 4e5f};
+  EvaluationLog(path_, 42).write(schedule_hash(schedule_ending_at(0.01)), "screen", "wave", outcome);
+  const std::vector<Evaluation> read = read_evaluations(path_);
+  ASSERT_EQ(read.size(), 1u);
+  ASSERT_EQ(read[0].outcome.fields.size(), outcome.fields.size());
+  EXPECT_EQ(std::memcmp(read[0].outcome.fields.data(), outcome.fields.data(), 16), 0);
 }
 
 TEST_F(EvaluationLogFile, KeepsBothScoresOfAPressedPly) {

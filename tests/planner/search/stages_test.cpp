@@ -14,7 +14,7 @@
 
 #include "mapping/error.hpp"
 #include "planner/drape/problem.hpp"
-#include "planner/search/front.hpp"
+#include "planner/search/finalists.hpp"
 #include "planner/search/interrupted.hpp"
 #include "tests/planner/search/noise.hpp"
 

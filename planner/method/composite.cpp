@@ -1,0 +1,181 @@
+#include "planner/method/composite.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "planner/base/parallel.hpp"
+#include "planner/method/cmaes.hpp"
+#include "planner/method/normal.hpp"
+
+namespace drapeplan {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Radius of the ball, r.m.s. per coordinate of a place in [0, 1]: first, smallest and largest. A step of the
+/// smallest is well above the noise of a drape.
+constexpr double kFirstRadius = 0.056, kSmallestRadius = 0.028, kLargestRadius = 0.14;
+constexpr double kGrow = 1.2, kShrink = 0.9;
+/// The part of the radius at which points lie beside what the model likes best.
+constexpr double kBeside = 0.4;
+/// Batches without gain after which the ball is as at first, and batches are twice as large.
+constexpr int kPatience = 25;
+constexpr int kLargestBatch = 16;
+/// The model is made from the nearest observations: more of them cost as the cube, and lie too far away.
+constexpr size_t kNearest = 300;
+/// Of the nearest of these, what they miss is taken as the model's possible errors, so many of them.
+constexpr size_t kErrorPool = 40;
+constexpr int kErrors = 6;
+/// An error counts in proportion to the spread, but a place far away is not held to be without bounds.
+constexpr double kMostSpread = 3;
+/// Generations of CMA-ES over the model.
+constexpr int kGenerations = 60;
+/// First step of these, of the radius.
+constexpr double kInnerStep = 0.3;
+/// Price of leaving the ball, per radius: more than any objective falls on the way.
+constexpr double kOutside = 1e3;
+/// The kernel is chosen anew when there is so much more to choose from.
+constexpr double kMoreObservations = 1.15;
+
+}  // namespace
+
+struct CompositeSearch::Expectation {
+  Observation around;
+  std::optional<FieldModel> model;
+  std::function<double(const Eigen::VectorXd&)> objective;
+  std::vector<Eigen::VectorXd> errors;  ///< of fields where one observation is left out
+  std::vector<double> spreads;          ///< of these predictions
+
+  /// The last field is what the objective of the others does not explain.
+  [[nodiscard]] double value_of(const Eigen::VectorXd& fields) const {
+    const Eigen::Index last = fields.size() - 1;
+    return (objective ? objective(fields.head(last)) : 0) + fields[last];
+  }
+  [[nodiscard]] double at(const Eigen::VectorXd& place) const {
+    const FieldModel::Prediction prediction = model->predict(place);
+    double sum = 0;
+    for (size_t k = 0; k < errors.size(); ++k) {
+      const double factor = std::min(prediction.spread / spreads[k], kMostSpread);
+      sum += value_of(prediction.fields + factor * errors[k]);
+    }
+    return errors.empty() ? value_of(prediction.fields) : sum / double(errors.size());
+  }
+};
+
+CompositeSearch::CompositeSearch(ObjectiveNear objective, Eigen::VectorXd scale,
+                                 const CompositeOptions& options)
+    : objective_(std::move(objective)),
+      scale_(std::move(scale)),
+      options_(options),
+      radius_(kFirstRadius),
+      batch_(options.batch),
+      bits_(options.seed) {}
+
+void CompositeSearch::observe(const Eigen::VectorXd& place, int level, const std::vector<float>& fields,
+                              double value) {
+  if (!std::isfinite(value)) return;
+  Observation one{place, level, Eigen::VectorXd(Eigen::Index(fields.size()) + 1), value};
+  for (size_t k = 0; k < fields.size(); ++k) one.fields[Eigen::Index(k)] = double(fields[k]);
+  const Eigen::VectorXd own = one.fields.head(Eigen::Index(fields.size()));
+  one.fields.tail<1>()[0] = value - (fields.empty() ? 0 : objective_(own)(own));
+  if (!one.fields.allFinite()) return;
+  seen_.push_back(std::move(one));
+}
+
+void CompositeSearch::set_level(int level) {
+  level_ = level;
+}
+
+bool CompositeSearch::ready() const {
+  return seen_.size() >= 2 && best() != nullptr;
+}
+
+const Observation* CompositeSearch::best() const {
+  const Observation* best = nullptr;
+  for (const Observation& one : seen_) {
+    if (one.level == level_ && (best == nullptr || one.value < best->value)) best = &one;
+  }
+  return best;
+}
+
+CompositeSearch::Expectation CompositeSearch::expectation() {
+  Expectation e{*best(), {}, {}, {}, {}};
+  const auto distance2 = [&](const Observation* one) { return (one->place - e.around.place).squaredNorm(); };
+  std::vector<const Observation*> near;
+  for (const Observation& one : seen_) near.push_back(&one);
+  std::stable_sort(near.begin(), near.end(),
+                   [&](const Observation* a, const Observation* b) { return distance2(a) < distance2(b); });
+  near.resize(std::min(near.size(), kNearest));
+  const bool keep =
+      kernel_ && kernel_level_ == level_ && (double(seen_.size()) < kMoreObservations * double(kernel_from_));
+  Eigen::VectorXd scale(scale_.size() + 1);
+  scale << scale_, 0.1;
+  e.model.emplace(near, scale, level_, keep ? &*kernel_ : nullptr, options_.threads);
+  if (!keep) kernel_ = e.model->kernel(), kernel_from_ = seen_.size(), kernel_level_ = level_;
+  if (scale_.size() > 0) e.objective = objective_(e.around.fields.head(scale_.size()));
+  std::vector<Eigen::Index> pool;
+  for (size_t k = 0; k < near.size() && pool.size() < kErrorPool; ++k) {
+    if (near[k]->level == level_) pool.push_back(Eigen::Index(k));
+  }
+  for (int k = 0; k < kErrors; ++k) {
+    FieldModel::Prediction error = e.model->left_out(pool[bits_() % pool.size()]);
+    e.errors.push_back(std::move(error.fields));
+    e.spreads.push_back(error.spread);
+  }
+  return e;
+}
+
+/// The point of the ball with the lowest expectation, by CMA-ES from the best observation.
+Eigen::VectorXd CompositeSearch::minimise(const Expectation& e, const SearchSpace& space, double radius) {
+  const Eigen::VectorXd start = space.nearest_point(e.around.place);
+  const double reach = radius * std::sqrt(double(e.around.place.size()));
+  CmaEs inner(start, {.sigma0 = kInnerStep * reach / std::sqrt(double(space.dimension)), .seed = bits_()});
+  Eigen::VectorXd best = start;
+  double lowest = kInfinity;
+  for (int generation = 0; generation < kGenerations && inner.stop_reason().empty(); ++generation) {
+    const Eigen::MatrixXd points = inner.ask();
+    Eigen::VectorXd values(points.cols());
+    const auto expect = [&](int k) {
+      const Eigen::VectorXd place = space.place(points.col(k));
+      const double outside = (place - e.around.place).norm() / reach - 1;
+      values[k] = e.at(place) + kOutside * std::max(outside, 0.0);
+    };
+    parallel_for(int(points.cols()), expect, options_.threads);
+    for (Eigen::Index k = 0; k < points.cols(); ++k) {
+      if (values[k] < lowest) lowest = values[k], best = points.col(k);
+    }
+    inner.tell(values);
+  }
+  return best;
+}
+
+Eigen::VectorXd CompositeSearch::beside(const Eigen::VectorXd& point, const SearchSpace& space) {
+  Eigen::VectorXd step(space.dimension);
+  for (double& x : step) x = standard_normal(bits_);
+  const double length = kBeside * radius_ * std::sqrt(double(space.dimension));
+  return (point + step * (length / step.norm())).cwiseMax(0).cwiseMin(1);
+}
+
+Eigen::MatrixXd CompositeSearch::ask(const SearchSpace& space, int count) {
+  Eigen::MatrixXd batch(space.dimension, count > 0 ? count : batch_);
+  const Expectation e = expectation();
+  before_ = e.around.value;
+  batch.col(0) = minimise(e, space, radius_);
+  if (batch.cols() > 1) batch.col(1) = minimise(e, space, 0.5 * radius_);
+  for (Eigen::Index k = 2; k < batch.cols(); ++k) batch.col(k) = beside(batch.col(k % 2), space);
+  return batch;
+}
+
+void CompositeSearch::end_batch() {
+  if (best() == nullptr) return;
+  const bool gain = best()->value < before_;
+  radius_ = std::clamp(radius_ * (gain ? kGrow : kShrink), kSmallestRadius, kLargestRadius);
+  without_gain_ = gain ? 0 : without_gain_ + 1;
+  if (without_gain_ < kPatience) return;
+  without_gain_ = 0;
+  radius_ = kFirstRadius;
+  batch_ = std::min(2 * batch_, kLargestBatch);
+}
+
+}  // namespace drapeplan
