@@ -44,6 +44,7 @@ inline std::optional<std::vector<unsigned char>> bytes_of_base64(std::string_vie
     group = 0;
   }
   for (; padding > 0 && !bytes.empty(); --padding) bytes.pop_back();
+  if (base64(bytes) != text) return {};  // bits that are left over
   return bytes;
 }
 

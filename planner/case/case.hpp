@@ -52,7 +52,7 @@ struct DesignVariable {
 struct OptimiseOptions {
   double budget = 600;           ///< of a plan, with its reports [s]
   int evaluations = 0;           ///< budget below the reporting fidelity; 0: `budget`
-  int finalists = 4;             ///< best schedules that are evaluated at the reporting fidelity
+  int finalists = 4;             ///< one more is evaluated at the reporting fidelity in the end, at least
   double shortest_stroke = 1.0;  ///< of a gripper after the preshape [s]
   double longest_sequence = 15;  ///< after the preshape [s]
   unsigned seed = 1;

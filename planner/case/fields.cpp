@@ -138,7 +138,7 @@ void visit_optimise(FieldVisitor& v, OptimiseOptions& o) {
            "Evaluations that a plan may take below the reporting fidelity, instead of a time: the result can "
            "then be had again; its last generation may go over it; 0: `budget` counts",
            Dimension::none, from(0, 1e7)});
-  v.field({"finalists", &o.finalists, "Best schedules that are evaluated at the reporting fidelity",
+  v.field({"finalists", &o.finalists, "Schedules that are evaluated at the reporting fidelity in the end, at least: one more than this",
            Dimension::none, from(1, 1e4)});
   v.field({"shortest_stroke", &o.shortest_stroke, "Of a gripper after the preshape", Dimension::time,
            positive()});

@@ -228,15 +228,17 @@ const Model& DrapeProblem::model(const std::string& fidelity) const {
 
 const ScoreFields& DrapeProblem::score_fields() const {
   return score_fields_->get([this] {
-    const auto coarsest = std::max_element(
-        case_.fidelities.begin(), case_.fidelities.end(),
-        [](const auto& a, const auto& b) { return a.second.mesh_size < b.second.mesh_size; });
-    return ScoreFields(model(coarsest->first).scene().mesh, *case_.mold, map_.boundary,
-                       case_.material.thickness, case_.score);
+    double cell = case_.fidelities.at(kReport).mesh_size;
+    for (const char* name : kSearched) {
+      if (const auto found = case_.fidelities.find(name); found != case_.fidelities.end())
+        cell = std::max(cell, found->second.mesh_size);
+    }
+    return ScoreFields(mesh_of(case_, cell), *case_.mold, map_.boundary, case_.material.thickness,
+                       case_.score);
   });
 }
 
-std::vector<float> DrapeProblem::fields_of(const Drape& drape, const std::string& fidelity) const {
+std::vector<float> DrapeProblem::score_fields_of(const Drape& drape, const std::string& fidelity) const {
   if (!drape.score.valid) return {};
   const Mesh& mesh = model(fidelity).scene().mesh;
   const ScoreFields& fields = score_fields();

@@ -2,6 +2,7 @@
 // the reach floor are made when they are first asked for.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -22,6 +23,8 @@ namespace drapeplan {
 
 /// The fidelity at which results are claimed; every case has it.
 inline constexpr const char* kReport = "report";
+/// Those that a search uses, where a case has them; the cheapest first.
+inline constexpr std::array kSearched{"screen", "search"};
 
 /// The FE scene of a case at a fidelity: sections that are absent add nothing.
 /// @throws WrongInput if the scene cannot be built.
@@ -67,6 +70,8 @@ class DrapeProblem {
   /// @param value  needs mold, mapping and grippers.
   /// @throws NotFinished if the ply cannot be mapped, or not be reached where the schedule needs it.
   explicit DrapeProblem(Case definition);
+  DrapeProblem(const DrapeProblem&) = delete;  // parts of it refer to others
+  DrapeProblem& operator=(const DrapeProblem&) = delete;
 
   [[nodiscard]] const Case& definition() const { return case_; }
   [[nodiscard]] const MapResult& mapping() const { return map_; }
@@ -75,11 +80,11 @@ class DrapeProblem {
   /// With cells of 20 mm; takes seconds.
   [[nodiscard]] const PlyFloor& ply_floor() const;
   [[nodiscard]] const SequenceFrame& frame() const { return frame_; }
-  /// On the coarsest mesh of all fidelities. @throws WrongInput if its model cannot be built.
+  /// On the coarsest mesh of those that a plan uses. @throws WrongInput if there is no such mesh.
   [[nodiscard]] const ScoreFields& score_fields() const;
   /// The fields of a drape at a fidelity, as the objective sees it (before or after pressing); empty if its
   /// score is not valid.
-  [[nodiscard]] std::vector<float> fields_of(const Drape& drape, const std::string& fidelity) const;
+  [[nodiscard]] std::vector<float> score_fields_of(const Drape& drape, const std::string& fidelity) const;
   /// @throws std::out_of_range if the case has no such fidelity, WrongInput if its model cannot be
   /// built.
   [[nodiscard]] const Model& model(const std::string& fidelity) const;

@@ -111,13 +111,11 @@ ScoreFields::Sampling ScoreFields::sampling(const Mesh& mesh) const {
 
 std::vector<float> ScoreFields::measure(const Mesh& mesh, const Sampling& sampling, const Snapshot& end,
                                         const Score& score) const {
-  std::vector<double> gaps;
-  for (const Eigen::Vector3d& place : end.position)
-    gaps.push_back(mold_.closest(place).signed_distance - 0.5 * thickness_);
+  const std::vector<double> gaps = signed_gaps(end, mold_, thickness_);
   const std::vector<double> strains = bridging_strain(mesh, end, mold_);
   std::vector<float> fields;
   fields.reserve(size_t(size()));
-  for (const std::vector<double>* field : {&std::as_const(gaps), &strains}) {
+  for (const std::vector<double>* field : {&gaps, &strains}) {
     for (const auto& [node, weight] : sampling) {
       double value = 0;
       for (int c = 0; c < 4; ++c) value += weight[c] * (*field)[size_t(node[size_t(c)])];

@@ -31,14 +31,6 @@ constexpr double kWrinkledShare = 0.01;  // [-]
 constexpr double kLagUnit = 0.001;       // [m], of the weight of lag above its tolerance
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-double gap(const Mold& mold, const Eigen::Vector3d& place, double thickness) {
-  const ClosestPoint closest = mold.closest(place);
-  const bool good = closest.converged && std::isfinite(closest.signed_distance);
-  const double distance = good ? closest.signed_distance : place.z() - mold.height(place.x(), place.y());
-  const double gap = distance - 0.5 * thickness;
-  return gap > 0 || std::isnan(gap) ? gap : 0.0;
-}
-
 /// Means over the elements around each node.
 struct NodalFibres {
   std::vector<Eigen::Vector2d> warp, weft;  ///< sums of the deformed directions, seen from above; any length
@@ -203,10 +195,21 @@ bool score_gap(const Mesh& mesh, const Snapshot& end, const Mold& mold, double t
 
 }  // namespace
 
-std::vector<double> nodal_gaps(const Snapshot& end, const Mold& mold, double thickness) {
+std::vector<double> signed_gaps(const Snapshot& end, const Mold& mold, double thickness) {
   std::vector<double> gaps;
   gaps.reserve(end.position.size());
-  for (const Eigen::Vector3d& place : end.position) gaps.push_back(gap(mold, place, thickness));
+  for (const Eigen::Vector3d& place : end.position) {
+    const ClosestPoint closest = mold.closest(place);
+    const bool good = closest.converged && std::isfinite(closest.signed_distance);
+    gaps.push_back((good ? closest.signed_distance : place.z() - mold.height(place.x(), place.y())) -
+                   0.5 * thickness);
+  }
+  return gaps;
+}
+
+std::vector<double> nodal_gaps(const Snapshot& end, const Mold& mold, double thickness) {
+  std::vector<double> gaps = signed_gaps(end, mold, thickness);
+  for (double& gap : gaps) gap = gap > 0 || std::isnan(gap) ? gap : 0.0;
   return gaps;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "planner/base/parallel.hpp"
@@ -17,7 +18,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// smallest is well above the noise of a drape.
 constexpr double kFirstRadius = 0.056, kSmallestRadius = 0.028, kLargestRadius = 0.14;
 constexpr double kGrow = 1.2, kShrink = 0.9;
-/// The part of the radius at which points lie beside what the model likes best.
+/// The part of the radius at which points lie beside what the model likes best, in coordinates of the space.
 constexpr double kBeside = 0.4;
 /// Batches without gain after which the ball is as at first, and batches are twice as large.
 constexpr int kPatience = 25;
@@ -74,7 +75,10 @@ CompositeSearch::CompositeSearch(ObjectiveNear objective, Eigen::VectorXd scale,
 
 void CompositeSearch::observe(const Eigen::VectorXd& place, int level, const std::vector<float>& fields,
                               double value) {
-  if (!std::isfinite(value)) return;
+  if (!std::isfinite(value) || Eigen::Index(fields.size()) != scale_.size()) return;
+  for (const Observation& one : seen_) {
+    if (one.level == level && one.place == place) return;
+  }
   Observation one{place, level, Eigen::VectorXd(Eigen::Index(fields.size()) + 1), value};
   for (size_t k = 0; k < fields.size(); ++k) one.fields[Eigen::Index(k)] = double(fields[k]);
   const Eigen::VectorXd own = one.fields.head(Eigen::Index(fields.size()));
@@ -119,7 +123,7 @@ CompositeSearch::Expectation CompositeSearch::expectation() {
     if (near[k]->level == level_) pool.push_back(Eigen::Index(k));
   }
   for (int k = 0; k < kErrors; ++k) {
-    FieldModel::Prediction error = e.model->left_out(pool[bits_() % pool.size()]);
+    FieldModel::Miss error = e.model->left_out(pool[bits_() % pool.size()]);
     e.errors.push_back(std::move(error.fields));
     e.spreads.push_back(error.spread);
   }
@@ -158,6 +162,7 @@ Eigen::VectorXd CompositeSearch::beside(const Eigen::VectorXd& point, const Sear
 }
 
 Eigen::MatrixXd CompositeSearch::ask(const SearchSpace& space, int count) {
+  if (!ready()) throw std::logic_error("CompositeSearch::ask: there is nothing to learn from");
   Eigen::MatrixXd batch(space.dimension, count > 0 ? count : batch_);
   const Expectation e = expectation();
   before_ = e.around.value;

@@ -25,7 +25,7 @@ struct SearchSpace {
 };
 
 struct CompositeOptions {
-  int batch = 4;  ///< two that the model likes best, the others beside them
+  int batch = 4;  ///< two that the model likes best, the others beside them, to learn more
   std::uint64_t seed = 1;
   int threads = 0;  ///< for the model's own work; does not change the result
 };
@@ -45,21 +45,22 @@ class CompositeSearch {
   /// @param objective  g.  @param scale  a small difference of each field; empty: there are no fields.
   CompositeSearch(ObjectiveNear objective, Eigen::VectorXd scale, const CompositeOptions& options);
 
-  /// Takes note of a value, of whatever search it is from. A failure (not finite) teaches nothing.
+  /// Takes note of a value, of whatever search it is from. A failure (not finite) teaches nothing, nor does
+  /// what was seen before, or comes without its fields.
   /// @param level  fidelity, from 0, the cheapest.
-  /// @param fields  empty if there are none.
+  /// @param fields  as many as the scale has.
   void observe(const Eigen::VectorXd& place, int level, const std::vector<float>& fields, double value);
 
   /// The fidelity that is searched from now on.
   void set_level(int level);
   /// The next batch: points of the space, one column each.
   /// @param count  how many; 0: as the options and the patience of the search say.
+  /// @throws std::logic_error if the search is not ready.
   Eigen::MatrixXd ask(const SearchSpace& space, int count = 0);
   /// After a batch was observed: the ball is resized.
   void end_batch();
 
-  [[nodiscard]] double radius() const { return radius_; }  ///< r.m.s. step per coordinate of a place
-  [[nodiscard]] bool ready() const;                        ///< there are two observations, one at this level
+  [[nodiscard]] bool ready() const;  ///< there are two observations, one at this level
 
  private:
   /// The model of one batch: what is expected of a place, around the best one.

@@ -120,7 +120,8 @@ void FieldModel::choose_kernel(int threads) {
   }
   std::vector<double> missed(grid.size());
   parallel_for(
-      int(grid.size()), [&](int k) { missed[size_t(k)] = missed_by(inverse_covariance(grid[size_t(k)])); }, threads);
+      int(grid.size()), [&](int k) { missed[size_t(k)] = missed_by(inverse_covariance(grid[size_t(k)])); },
+      threads);
   kernel_ = grid[size_t(std::min_element(missed.begin(), missed.end()) - missed.begin())];
 }
 
@@ -139,7 +140,7 @@ FieldModel::Prediction FieldModel::predict(const Eigen::VectorXd& place) const {
   return {mean_ + basis_ * (weights_.transpose() * k), std::sqrt(std::max(variance, 0.0))};
 }
 
-FieldModel::Prediction FieldModel::left_out(Eigen::Index observation) const {
+FieldModel::Miss FieldModel::left_out(Eigen::Index observation) const {
   const double precision = inverse_(observation, observation);
   const Eigen::VectorXd components =
       components_.row(observation).transpose() - weights_.row(observation).transpose() / precision;

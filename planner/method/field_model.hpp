@@ -37,6 +37,10 @@ class FieldModel {
     Eigen::VectorXd fields;
     double spread = 0;  ///< standard deviation, noise included, over that of the fields as observed
   };
+  struct Miss {
+    Eigen::VectorXd fields;  ///< as observed, less as predicted
+    double spread = 0;       ///< of the prediction
+  };
 
   /// @param observations  two or more.
   /// @param scale    a small difference of each field: principal components are those of fields over it.
@@ -47,9 +51,8 @@ class FieldModel {
              const Kernel* kernel, int threads);
 
   [[nodiscard]] Prediction predict(const Eigen::VectorXd& place) const;
-  /// By how much the fields of an observation differ from what all others predict there, and that
-  /// prediction's spread.
-  [[nodiscard]] Prediction left_out(Eigen::Index observation) const;
+  /// What all other observations miss at one.
+  [[nodiscard]] Miss left_out(Eigen::Index observation) const;
   [[nodiscard]] const Kernel& kernel() const { return kernel_; }
   /// Share of the variance of the fields that predictions miss where one is left out.
   [[nodiscard]] double missed() const { return missed_; }

@@ -113,11 +113,33 @@ Eigen::VectorXd WaveFamily::encode(const WaveParameters& wave) const {
   return x;
 }
 
+std::vector<Eigen::VectorXd> WaveFamily::spread() const {
+  const Eigen::Vector2d corner =
+      0.5 * frame_.rig.spacing * Eigen::Vector2d(frame_.rig.columns - 1, frame_.rig.rows - 1);
+  std::vector<Eigen::VectorXd> members;
+  const auto add = [&](double u, double v, double delay_factor) {
+    WaveParameters wave = baseline_wave(frame_);
+    wave.start = Eigen::Vector2d(u * corner[0], v * corner[1]);
+    wave.delay *= delay_factor;
+    members.push_back(encode(wave));
+  };
+  for (const double v : {-1.0, 1.0}) {
+    for (const double u : {-1.0, 1.0}) add(u, v, 1);
+  }
+  for (const double side : {-1.0, 1.0}) add(side, 0, 1);
+  for (const double side : {-1.0, 1.0}) add(0, side, 1);
+  add(0, 0, 3);  // the next group starts when the one before is nearly down
+  return members;
+}
+
 StrokeFamily::StrokeFamily(SequenceFrame frame, const StrokeSpreads& spreads) : frame_(std::move(frame)) {
   const ScheduleOptions& o = frame_.options;
   const auto add = [&](double Stroke::*value, std::optional<Spread> spread, double low, double high) {
     if (!spread) return;
-    parts_.push_back({value, low, high, basis_of(frame_.rig, *spread)});
+    const Eigen::MatrixXd basis = basis_of(frame_.rig, *spread);
+    const bool each = *spread == Spread::each;
+    parts_.push_back(
+        {value, low, high, basis, each ? basis : basis.completeOrthogonalDecomposition().pseudoInverse()});
     dimension_ += int(parts_.back().basis.cols());
   };
   add(&Stroke::start, spreads.start, 0, std::max(0.0, frame_.longest_sequence - frame_.shortest_stroke));
@@ -150,7 +172,7 @@ Eigen::VectorXd StrokeFamily::encode(const Strokes& strokes) const {
     Eigen::VectorXd values(part.basis.rows());
     for (size_t g = 0; g < strokes.size(); ++g)
       values[Eigen::Index(g)] = inverse_linear(strokes[g].*part.value, part.low, part.high) - 0.5;
-    const Eigen::VectorXd own = part.basis.colPivHouseholderQr().solve(values).array() + 0.5;
+    const Eigen::VectorXd own = (part.inverse * values).array() + 0.5;
     x.segment(first, own.size()) = own.unaryExpr(&unit);
     first += own.size();
   }

@@ -24,6 +24,9 @@ class WaveFamily {
   [[nodiscard]] Strokes decode(const Eigen::VectorXd& x) const;
   /// Nearest member; rings become a square front (the same strokes if the start point is a gripper).
   [[nodiscard]] Eigen::VectorXd encode(const WaveParameters& wave) const;
+  /// Nine members to begin with: the baseline wave from the corners, the mid-sides, and a slow one from the
+  /// middle.
+  [[nodiscard]] std::vector<Eigen::VectorXd> spread() const;
 
  private:
   SequenceFrame frame_;
@@ -66,7 +69,8 @@ class StrokeFamily {
   struct Part {
     double Stroke::*value;
     double low, high;
-    Eigen::MatrixXd basis;  ///< grippers by coordinates
+    Eigen::MatrixXd basis;    ///< grippers by coordinates
+    Eigen::MatrixXd inverse;  ///< of the basis, in the sense of least squares
   };
   SequenceFrame frame_;
   std::vector<Part> parts_;

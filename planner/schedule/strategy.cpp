@@ -164,6 +164,18 @@ void let_go_pressed(const std::optional<PressOptions>& press, Schedule& schedule
   for (auto& time : schedule.release) time = std::min(time.value_or(full), full);
 }
 
+bool nearly_equal(const Schedule& a, const Schedule& b) {
+  constexpr double kTime = 0.05, kHeight = 0.001;  // [s], [m]
+  for (size_t g = 0; g < a.paths.size(); ++g) {
+    if (a.paths[g].size() != b.paths[g].size()) return false;
+    for (size_t k = 0; k < a.paths[g].size(); ++k) {
+      if (std::abs(a.paths[g][k].time - b.paths[g][k].time) > kTime) return false;
+      if (std::abs(a.paths[g][k].z - b.paths[g][k].z) > kHeight) return false;
+    }
+  }
+  return true;
+}
+
 std::string stretched(const SequenceFrame& frame, const Strokes& strokes) {
   const double preshaped = preshape_duration(frame, strokes), longest = largest_velocity(frame.rig);
   double fastest = 0;  // of those that are stretched [s]

@@ -81,6 +81,8 @@ Schedule to_schedule(const SequenceFrame& frame, const Strokes& strokes);
 /// Where pads are released in the press, ends the suction of all grippers that still hold the ply when the
 /// pressure is full.
 void let_go_pressed(const std::optional<PressOptions>& press, Schedule& schedule);
+/// All knots agree within 50 ms and 1 mm: for a robot, the same schedule.
+bool nearly_equal(const Schedule& a, const Schedule& b);
 /// What to_schedule stretched, as a sentence; empty if nothing.
 std::string stretched(const SequenceFrame& frame, const Strokes& strokes);
 

@@ -36,8 +36,13 @@ void Budget::count(const std::string& stage, const std::string& fidelity,
   if (progress_) progress_(progress(stage, kind));
 }
 
-void Budget::reserve(int runs) {
+void Budget::reserve(int runs, int at_a_time) {
   reserved_ = reported_ + runs;
+  at_a_time_ = at_a_time;
+}
+
+bool Budget::holds(int reports) const {
+  return options_.evaluations > 0 || elapsed_ + time_of_reports(reports) <= options_.budget;
 }
 
 double Budget::rate() const {
@@ -48,12 +53,16 @@ double Budget::rate() const {
 
 /// A report costs in proportion to the schedule's length, and the finalists will be as long as what is
 /// searched now. The last core to finish decides: one more than their share.
-double Budget::reports_to_come() const {
+double Budget::time_of_reports(int count) const {
   const auto report = kinds_.find(kReport);
-  const int left = std::max(reserved_ - reported_, 0);
-  if (left == 0 || report == kinds_.end() || !(report->second.duration > 0)) return 0;
+  if (count <= 0 || report == kinds_.end() || !(report->second.duration > 0)) return 0;
   const double each = report->second.seconds / report->second.duration * longest_;
-  return (left * rate() + (1 - rate())) * each;
+  const double rate = std::max(this->rate(), 1.0 / at_a_time_);
+  return (count * rate + (1 - rate)) * each;
+}
+
+double Budget::reports_to_come() const {
+  return time_of_reports(reserved_ - reported_);
 }
 
 double Budget::limit() const {

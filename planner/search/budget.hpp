@@ -28,8 +28,10 @@ class Budget {
   /// Takes note of a batch; reports of baselines and finalists do not count in a budget of evaluations.
   void count(const std::string& stage, const std::string& fidelity, const std::vector<Outcome>& outcomes,
              bool report = false);
-  /// Keeps time for what comes at the end, `runs` reports.
-  void reserve(int runs);
+  /// Keeps time for what comes at the end, `runs` reports, so many at a time.
+  void reserve(int runs, int at_a_time);
+  /// There is time for so many more reports, side by side; always true for a budget of evaluations.
+  [[nodiscard]] bool holds(int reports) const;
   /// Share of the budget that is spent, from 0; 1 or more: nothing is left.
   [[nodiscard]] double spent() const;
   /// How many evaluations a share of the whole budget pays for at this fidelity; at least 0.
@@ -45,12 +47,13 @@ class Budget {
   [[nodiscard]] Progress progress(const std::string& stage, const Kind& kind) const;
   [[nodiscard]] double limit() const;  ///< [s]
   [[nodiscard]] double rate() const;   ///< elapsed time per second of evaluations: one over the cores in use
-  [[nodiscard]] double reports_to_come() const;  ///< [s]
+  [[nodiscard]] double time_of_reports(int count) const;  ///< [s]
+  [[nodiscard]] double reports_to_come() const;           ///< [s]
 
   OptimiseOptions options_;
   std::function<void(const Progress&)> progress_;
   std::map<std::string, Kind> kinds_;  ///< per fidelity
-  int searched_ = 0, reported_ = 0, reserved_ = 0;
+  int searched_ = 0, reported_ = 0, reserved_ = 0, at_a_time_ = 1;
   double longest_ = 0;  ///< of the schedules of the last batch [s]
   double elapsed_ = 0;  ///< on the log's clock [s]
   double begin_ = 0;    ///< of the first evaluation that is counted, on the same clock [s]

@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kFormat = "drapeplan-evaluations-1";
+constexpr const char* kFormat = "drapeplan-evaluations-2";
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::uint64_t from_hex(const json& text) {
@@ -261,6 +261,7 @@ Outcome EvaluationLog::evaluate_once(std::uint64_t candidate, const std::string&
       return outcome;
     }
     running_.insert(key);
+    if (!begin_) begin_ = std::chrono::steady_clock::now();
   }
   std::optional<Outcome> outcome;
   const auto end = [&] {
@@ -296,7 +297,9 @@ void EvaluationLog::write(std::uint64_t candidate, const std::string& fidelity, 
 }
 
 double EvaluationLog::elapsed() const {
-  return before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  const std::scoped_lock lock(mutex_);
+  if (!begin_) return before_;
+  return before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - *begin_).count();
 }
 
 int EvaluationLog::size() const {

@@ -73,7 +73,7 @@ class EvaluationLog {
              const Outcome& outcome);
 
   /// The log's clock: how long its plan has been searching, earlier runs included, to the last evaluation
-  /// that they logged [s].
+  /// that they logged [s]. It goes on with the first evaluation that is not served from the file.
   [[nodiscard]] double elapsed() const;
 
   /// How many evaluations it has, those read from the file included.
@@ -89,7 +89,7 @@ class EvaluationLog {
   std::set<Key> running_;
   std::map<std::string, double> best_;  // per fidelity
   int last_number_ = 0, size_ = 0;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::optional<std::chrono::steady_clock::time_point> begin_;  ///< when it first ran something
   double before_ = 0;  ///< what its clock had shown when the file was opened [s]
   double latest_ = 0;  ///< of all evaluations [s]
   std::string path_;

@@ -101,7 +101,7 @@ std::uint64_t case_hash(const Case& definition) {
 
 std::vector<std::string> plan_ladder(const Case& definition) {
   std::vector<std::string> ladder;
-  for (const char* name : {"screen", "search"}) {
+  for (const char* name : kSearched) {
     if (definition.fidelities.contains(name)) ladder.emplace_back(name);
   }
   if (ladder.empty()) ladder.emplace_back(kReport);
@@ -121,7 +121,7 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
     const bool report = fidelity == kReport;
     Drape drape = problem.run(schedule, fidelity, report ? kFrames : 0);
     Outcome outcome = outcome_of(drape);
-    outcome.fields = problem.fields_of(drape, fidelity);
+    outcome.fields = problem.score_fields_of(drape, fidelity);
     if (report) reported.offer(schedule_hash(schedule), std::move(drape));
     return outcome;
   };

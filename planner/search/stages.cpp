@@ -20,15 +20,16 @@ namespace drapeplan {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Schedules whose knots all agree within both count as the same finalist.
-constexpr double kDifferentTime = 0.05;     // [s]
-constexpr double kDifferentHeight = 0.001;  // [m]
 /// NLopt searches side by side, from as many of the screened waves.
 constexpr int kLocalSearches = 2;
 /// Shares of the budget after the waves at which parts of the search end: COBYLA and the composite search
 /// over smooth strokes, and the latter over all grippers at the cheaper fidelities (each in so many equal
 /// parts, with a check after each).
 constexpr double kCobylaEnd = 0.08, kSmoothEnd = 0.16, kScreenEnd = 0.5;
+/// Batches over smooth strokes without a gain after which that is all they have to give.
+constexpr int kSmoothPatience = 12;
+/// Batches that bring nothing new after which there is nothing new.
+constexpr int kIdle = 10;
 constexpr int kScreenParts = 3;
 /// Share of a budget of time that is kept for reports, if that is more than the finalists need; so many are
 /// evaluated at a time.
@@ -82,7 +83,7 @@ class StagedSearch {
     reports_ = options_.optimise.finalists + kExpected;
     if (options_.optimise.evaluations == 0)
       reports_ = std::max(reports_, budget_.affords(kReportShare, kReport));
-    budget_.reserve(reports_);
+    budget_.reserve(reports_, kReportBatch);
     try {
       search_waves();
       if (std::isfinite(best_at(options_.ladder.front())->objective)) {
@@ -103,8 +104,9 @@ class StagedSearch {
   void search_waves();
   void search_smooth();
   void search_grippers();
-  void search_until(double share, const StrokeFamily& family, size_t rung, const std::string& stage);
-  void climb(size_t rung);
+  void search_until(double share, const StrokeFamily& family, size_t rung, const std::string& stage,
+                    int patience = std::numeric_limits<int>::max());
+  bool climb(size_t rung);
   double compare_fidelities(size_t rung);
   void try_points(const Eigen::MatrixXd& points, const StrokeFamily& family, size_t rung,
                   const std::string& stage, Eigen::VectorXd* values = nullptr);
@@ -118,7 +120,6 @@ class StagedSearch {
   std::vector<Outcome> evaluate(std::vector<Trial>& trials, const std::string& fidelity,
                                 const std::string& stage, bool report = false);
   void record(const Trial& trial, const std::string& fidelity, const std::string& stage);
-  std::vector<Trial> screen_waves();
   std::vector<Trial> pick_finalists(int count) const;
   const Trial* best_at(const std::string& fidelity) const;
   void conclude_early();
@@ -148,8 +149,10 @@ std::vector<Outcome> StagedSearch::evaluate(std::vector<Trial>& trials, const st
     trials[k].followed = outcomes[k].score.followed;
     trials[k].lag = outcomes[k].score.max_lag;
     record(trials[k], fidelity, stage);
-    search_.observe(grippers_.encode(trials[k].strokes), level_of(fidelity), outcomes[k].fields,
-                    trials[k].objective);
+    // A baseline may lie outside of what is searched: it would be learned at a place that is not its own.
+    const Eigen::VectorXd place = grippers_.encode(trials[k].strokes);
+    if (nearly_equal(to_schedule(frame_, grippers_.decode(place)), schedules[k]))
+      search_.observe(place, level_of(fidelity), outcomes[k].fields, trials[k].objective);
   }
   return outcomes;
 }
@@ -173,38 +176,18 @@ void StagedSearch::record(const Trial& trial, const std::string& fidelity, const
   trials_[fidelity].push_back(trial);
 }
 
-/// Baselines, then waves from the middle, the corners and the mid-sides, as many as an evaluation budget
-/// holds.
-std::vector<Trial> StagedSearch::screen_waves() {
-  const WaveFamily family(frame_);
-  const WaveParameters base = baseline_wave(frame_);
-  std::vector<Trial> trials{{"uniform", uniform_strokes(frame_)}, {"wave", wave_strokes(frame_)}};
-  const auto add_member = [&](const Eigen::VectorXd& x) {
-    const int most = options_.optimise.evaluations;
-    if (most > 0 && int(trials.size()) >= most) return;
-    trials.push_back({fmt::format("wave {}", trials.size() + 1), family.decode(x)});
-  };
-  if (options_.wave.size() > 0) add_member(options_.wave);
-  const Eigen::Vector2d corner =
-      0.5 * frame_.rig.spacing * Eigen::Vector2d(frame_.rig.columns - 1, frame_.rig.rows - 1);
-  const auto add = [&](double u, double v, double delay_factor) {
-    WaveParameters wave = base;
-    wave.start = Eigen::Vector2d(u * corner[0], v * corner[1]);
-    wave.delay *= delay_factor;
-    add_member(family.encode(wave));
-  };
-  for (const double v : {-1.0, 1.0}) {
-    for (const double u : {-1.0, 1.0}) add(u, v, 1);
-  }
-  for (const double side : {-1.0, 1.0}) add(side, 0, 1);
-  for (const double side : {-1.0, 1.0}) add(0, side, 1);
-  add(0, 0, 3);  // a slow wave: the next group starts when the one before is nearly down
-  return trials;
-}
-
+/// Baselines and waves, as many as an evaluation budget holds.
 void StagedSearch::search_waves() {
-  std::vector<Trial> screened = screen_waves();
-  evaluate(screened, options_.ladder.front(), "wave");
+  std::vector<Trial> trials{{"uniform", uniform_strokes(frame_)}, {"wave", wave_strokes(frame_)}};
+  const WaveFamily family(frame_);
+  std::vector<Eigen::VectorXd> waves = family.spread();
+  if (options_.wave.size() > 0) waves.insert(waves.begin(), options_.wave);
+  for (const Eigen::VectorXd& x : waves) {
+    const int most = options_.optimise.evaluations;
+    if (most > 0 && int(trials.size()) >= most) break;
+    trials.push_back({fmt::format("wave {}", trials.size() + 1), family.decode(x)});
+  }
+  evaluate(trials, options_.ladder.front(), "wave");
   begin_ = std::min(budget_.spent(), 0.99);
 }
 
@@ -252,32 +235,44 @@ void StagedSearch::search_smooth() {
     try_points(points, smooth_, 0, "smooth", &values);
     cobyla.tell(values);
   }
-  search_until(kSmoothEnd, smooth_, 0, "smooth");
+  search_until(kSmoothEnd, smooth_, 0, "smooth", kSmoothPatience);
 }
 
+/// Also ends after so many batches without a gain, and where all that is asked for is known: a space of one
+/// schedule has no more to give, and costs no time.
 void StagedSearch::search_until(double share, const StrokeFamily& family, size_t rung,
-                                const std::string& stage) {
+                                const std::string& stage, int patience) {
+  const std::string& fidelity = options_.ladder[rung];
   search_.set_level(int(rung));
-  while (spent() < share && search_.ready()) {
+  for (int stale = 0, idle = 0; spent() < share && search_.ready() && stale < patience && idle < kIdle;) {
+    const double before = best_[fidelity];
+    const int known = result_.evaluations;
     try_points(search_.ask(space_of(family)), family, rung, stage);
     search_.end_batch();
+    stale = best_[fidelity] < before ? 0 : stale + 1;
+    idle = result_.evaluations > known ? 0 : idle + 1;
   }
 }
 
 void StagedSearch::search_grippers() {
-  const size_t finest = options_.ladder.size() - 1;
-  for (size_t rung = 0; rung < finest; ++rung) climb(rung);
-  search_until(1, grippers_, finest, "gripper");
+  size_t rung = 0;
+  while (rung + 1 < options_.ladder.size() && climb(rung)) ++rung;
+  search_until(1, grippers_, rung, "gripper");
 }
 
 /// Searches at one fidelity until its ranks are no longer those of the next one, or its share is spent.
-void StagedSearch::climb(size_t rung) {
+/// @return  there is something to go on from at the next one.
+bool StagedSearch::climb(size_t rung) {
   const double begin = spent();
-  for (int part = 1; part <= kScreenParts; ++part) {
+  for (int part = 1; part <= kScreenParts && spent() < 1; ++part) {
+    const int known = result_.evaluations;
     search_until(begin + (kScreenEnd - begin) * part / kScreenParts, grippers_, rung, "gripper");
+    if (part > 1 && result_.evaluations == known) break;
     // A correlation that is not defined is not trusted.
-    if (!(compare_fidelities(rung) >= kTrustedCorrelation)) return;
+    if (spent() < 1 && !(compare_fidelities(rung) >= kTrustedCorrelation)) break;
   }
+  const Trial* best = best_at(options_.ladder[rung + 1]);
+  return best != nullptr && std::isfinite(best->objective);
 }
 
 /// Evaluates some of the better recent schedules of a fidelity at the next one, too.
@@ -296,17 +291,6 @@ double StagedSearch::compare_fidelities(size_t rung) {
   evaluate(chosen, options_.ladder[rung + 1], "gripper");
   for (const Trial& trial : chosen) after.push_back(trial.objective);
   return spearman(before, after);
-}
-
-bool nearly_equal(const Schedule& a, const Schedule& b) {
-  for (size_t g = 0; g < a.paths.size(); ++g) {
-    if (a.paths[g].size() != b.paths[g].size()) return false;
-    for (size_t k = 0; k < a.paths[g].size(); ++k) {
-      if (std::abs(a.paths[g][k].time - b.paths[g][k].time) > kDifferentTime) return false;
-      if (std::abs(a.paths[g][k].z - b.paths[g][k].z) > kDifferentHeight) return false;
-    }
-  }
-  return true;
 }
 
 /// The best few that differ from each other and from the baselines, of the finest fidelity that has some. All
@@ -345,11 +329,17 @@ std::vector<Trial> StagedSearch::pick_finalists(int count) const {
 /// The reporting fidelity is the last step of the ladder: first the best of the search are evaluated there,
 /// then what the model, which has seen these, expects to be best there.
 void StagedSearch::search_reports() {
-  compare(pick_finalists(std::min(reports_, kReportBatch)), "report");
+  const int least = options_.optimise.finalists + kExpected;
+  std::vector<Trial> trials = pick_finalists(std::clamp(least - 1, 1, kReportBatch));
+  int made = int(trials.size());
+  compare(std::move(trials), "report");
   search_.set_level(level_of(kReport));
-  for (int left = reports_ - kReportBatch; left > 0 && search_.ready(); left -= kReportBatch) {
-    const Eigen::MatrixXd points = search_.ask(space_of(grippers_), std::min(left, kReportBatch));
-    std::vector<Trial> trials;
+  while (made < reports_ && search_.ready()) {
+    const int count = std::min(reports_ - made, kReportBatch);
+    if (made >= least && !budget_.holds(count)) break;
+    const Eigen::MatrixXd points = search_.ask(space_of(grippers_), count);
+    made += count;
+    trials.clear();
     for (Eigen::Index k = 0; k < points.cols(); ++k)
       trials.push_back({fmt::format("report {}", result_.history.size() + size_t(k) + 1),
                         grippers_.decode(points.col(k))});
@@ -371,6 +361,11 @@ void StagedSearch::compare(std::vector<Trial> trials, const std::string& stage) 
 void StagedSearch::conclude_early() {
   conclude(result_);
   result_.interrupted = true;
+  constexpr size_t kBaselines = 2;
+  if (result_.finalists.size() > kBaselines && std::isfinite(value_of(result_.best.outcome))) {
+    result_.message += "; interrupted, --resume goes on";
+    return;
+  }
   for (auto fidelity = options_.ladder.rbegin(); fidelity != options_.ladder.rend(); ++fidelity) {
     const std::vector<Trial>& list = trials_[*fidelity];
     const auto best = std::min_element(list.begin(), list.end(),

@@ -24,8 +24,8 @@
 #include "planner/base/statistics.hpp"
 #include "planner/case/file.hpp"
 #include "planner/drape/problem.hpp"
+#include "planner/method/cmaes.hpp"
 #include "planner/method/nlopt.hpp"
-#include "planner/method/restarts.hpp"
 #include "planner/report/charts.hpp"
 #include "planner/schedule/families.hpp"
 #include "planner/search/plan.hpp"
@@ -129,7 +129,8 @@ Subject case_subject(const std::string& file) {
   static_cast<void>(problem->model(fidelity));
   const auto told = [problem, fidelity](const Schedule& schedule, unsigned) {
     const Drape drape = problem->run(schedule, fidelity);
-    return Seen{drape.score.valid ? drape.score.objective : kInfinity, problem->fields_of(drape, fidelity)};
+    return Seen{drape.score.valid ? drape.score.objective : kInfinity,
+                problem->score_fields_of(drape, fidelity)};
   };
   const ScoreFields& fields = problem->score_fields();
   return {
@@ -215,8 +216,9 @@ Trace run_method(const Subject& subject, const std::string& name, unsigned seed,
     options.field_scale = subject.field_scale;
     const Evaluate evaluate = [&](const Schedule& schedule, const std::string& fidelity) {
       Outcome outcome;
+      // What is shown is the best that was told; reports are not part of the comparison, and fail.
+      outcome.score.objective = fidelity == kReport ? kInfinity : recorder.evaluate(schedule).value;
       if (fidelity != kReport) outcome.fields = recorder.evaluate(schedule).fields;
-      outcome.score.objective = fidelity == kReport ? 1 : recorder.evaluate(schedule).value;
       outcome.score.valid = std::isfinite(outcome.score.objective);
       return outcome;
     };
@@ -238,7 +240,7 @@ Trace run_method(const Subject& subject, const std::string& name, unsigned seed,
   else if (name == "random" || name == "even")
     method = std::make_unique<Sampling>(x0.size(), name == "even", seed);
   else
-    method = std::make_unique<RestartedCmaEs>(x0, CmaEsOptions{.sigma0 = 0.1, .seed = seed});
+    method = std::make_unique<CmaEs>(x0, CmaEsOptions{.sigma0 = 0.1, .seed = seed});
   while (recorder.left() > 0 && method->stop_reason().empty()) {
     const Eigen::MatrixXd x = method->ask();
     if (x.cols() == 0) break;

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace drapeplan {
 namespace {
 
@@ -36,7 +40,8 @@ TEST(Base64, GivesBackEveryByte) {
 }
 
 TEST(Base64, RefusesWhatItDoesNotWrite) {
-  for (const char* text : {"A", "AB", "ABC", "AB=C", "A===", "AB\n=", "A*BC", "====", "Zg==Zg=="})
+  for (const char* text :
+       {"A", "AB", "ABC", "AB=C", "A===", "AB\n=", "A*BC", "====", "Zg==Zg==", "Zh==", "Zm9="})
     EXPECT_FALSE(bytes_of_base64(text)) << text;
 }
 

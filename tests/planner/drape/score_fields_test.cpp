@@ -65,7 +65,27 @@ TEST(ScoreFields, GiveTheObjectiveOfTheScore) {
   ASSERT_EQ(fields.scale().size(), fields.size());
   // Between the nodes of the outline its distance from the boundary is not looked at.
   EXPECT_NEAR(fields.objective(own), score.objective, 0.01 * score.objective);
-  EXPECT_EQ(fields.objective_near(own)(own), fields.objective(own));
+}
+
+/// In a bowl a taut fibre bridges: the same gaps count as wrinkles where it is slack.
+TEST(ScoreFields, KnowWhatBridges) {
+  const Mold bowl(PolynomialShape{{{2, 0, 1.0}, {0, 2, 1.0}}}, kExtent);
+  const Mesh mesh = rectangle_mesh(kSide, kSide, 0.01);
+  ScoreOptions options;
+  options.weight_max_boundary_offset = options.weight_rms_boundary_offset = 0;
+  const ScoreFields fields(mesh, bowl, boundary(), kThickness, options);
+  Snapshot end = crumpled(mesh);
+  for (Vector3d& place : end.position) place.z() += bowl.height(place.x(), place.y());
+  std::vector<double> objectives;
+  for (const double strain : {1e-3, -1e-3}) {
+    end.warp_strain.assign(mesh.quads.size(), strain);
+    const Score score = score_of(mesh, end, bowl, options);
+    ASSERT_TRUE(score.valid) << score.reason;
+    const Eigen::VectorXd own = values(fields.measure(mesh, fields.sampling(mesh), end, score));
+    EXPECT_NEAR(fields.objective(own), score.objective, 1e-3 * score.objective);
+    objectives.push_back(fields.objective(own));
+  }
+  EXPECT_LT(objectives[0], objectives[1] - 5);
 }
 
 TEST(ScoreFields, NearFieldsHaveTheObjectiveThatIsSoughtEverywhere) {

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "planner/method/cmaes.hpp"
-#include "tests/planner/search/noise.hpp"
 
 namespace drapeplan {
 namespace {

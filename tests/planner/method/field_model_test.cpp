@@ -66,7 +66,7 @@ TEST(FieldModel, LeavingOneOutIsTheModelOfAllOthers) {
   std::vector<Observation> list = observations(15, 0, 0.3);
   const FieldModel whole(all_of(list), kScale, 0, nullptr, 1);
   const Kernel kernel = whole.kernel();
-  const FieldModel::Prediction left_out = whole.left_out(7);
+  const FieldModel::Miss left_out = whole.left_out(7);
   const Observation one = list[7];
   list.erase(list.begin() + 7);
   const FieldModel others(all_of(list), kScale, 0, &kernel, 1);
@@ -85,6 +85,23 @@ TEST(FieldModel, ACheaperLevelTeachesTheNextOne) {
   const FieldModel poor(all_of(alone), kScale, 1, nullptr, 1);
   EXPECT_LE(error_at(model, place, 1, 0.2), 0.1);
   EXPECT_LE(error_at(model, place, 1, 0.2), 0.5 * error_at(poor, place, 1, 0.2));
+}
+
+/// Where one level has been seen, the other one is less sure of itself; leaving one out is the others' model
+/// here as well.
+TEST(FieldModel, LevelsAreToldApart) {
+  std::vector<Observation> list = observations(20, 0, 0.2);
+  for (const Observation& one : observations(6, 1, 0.2)) list.push_back(one);
+  const Kernel kernel{.linear = 0.6, .length = 1.4, .noise = 0.003, .shared = 0.8};
+  const FieldModel cheap(all_of(list), kScale, 0, &kernel, 1), fine(all_of(list), kScale, 1, &kernel, 1);
+  EXPECT_GT(fine.predict(list[15].place).spread, 1.5 * cheap.predict(list[15].place).spread);
+  const FieldModel::Miss left_out = fine.left_out(22);
+  const Observation one = list[22];
+  list.erase(list.begin() + 22);
+  const FieldModel others(all_of(list), kScale, 1, &kernel, 1);
+  const Eigen::VectorXd miss = one.fields - others.predict(one.place).fields;
+  EXPECT_LE((miss - left_out.fields).norm(), 0.3 * miss.norm());
+  EXPECT_NEAR(others.predict(one.place).spread, left_out.spread, 0.3 * left_out.spread);
 }
 
 TEST(FieldModel, HasTheSameBitsForEveryNumberOfThreads) {

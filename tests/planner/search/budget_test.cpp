@@ -34,7 +34,7 @@ TEST(Budget, OfTimeKeepsWhatTheReportsWillTake) {
   double clock = 0;
   budget.count("baseline", kReport, batch(2, 10, clock), true);
   EXPECT_NEAR(budget.spent(), 10.0 / 100, 1e-12);
-  budget.reserve(4);  // 20 s on two cores, and half of one for the core that ends last
+  budget.reserve(4, 2);  // 20 s on two cores, and half of one for the core that ends last
   EXPECT_NEAR(budget.spent(), 10.0 / 75, 1e-12);
   EXPECT_EQ(budget.affords(0.5, "screen"), 0) << "nothing is known of its cost";
   budget.count("wave", "screen", batch(10, 1, clock));
@@ -54,7 +54,7 @@ TEST(Budget, OfEvaluationsDoesNotCountReports) {
   double clock = 0;
   budget.count("baseline", kReport, batch(2, 10, clock), true);
   EXPECT_EQ(budget.spent(), 0);
-  budget.reserve(3);
+  budget.reserve(3, 2);
   EXPECT_EQ(budget.affords(0.5, "screen"), 25);
   budget.count("wave", "screen", batch(20, 1, clock));
   EXPECT_NEAR(budget.spent(), 0.4, 1e-12);
@@ -72,7 +72,7 @@ TEST(Budget, KnowsItsCoresAfterALongSearchOverTheRig) {
   Budget budget(options, {});
   double clock = 500;
   budget.count("baseline", kReport, batch(2, 10, clock), true);
-  budget.reserve(4);
+  budget.reserve(4, 2);
   EXPECT_NEAR(budget.spent(), 510.0 / 975, 0.02) << "half a second of clock for each second of a run";
   std::vector<Outcome> failed = batch(1, 10, clock);
   failed[0].score.valid = false;
@@ -87,7 +87,7 @@ TEST(Budget, IsSpentWhereTheReportsAloneTakeLonger) {
   Budget budget(options, {});
   double clock = 0;
   budget.count("baseline", kReport, batch(2, 10, clock), true);
-  budget.reserve(3);
+  budget.reserve(3, 2);
   EXPECT_GE(budget.spent(), 1);
   EXPECT_EQ(budget.affords(0.5, kReport), 0);
 }
