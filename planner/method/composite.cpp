@@ -91,6 +91,10 @@ void CompositeSearch::set_level(int level) {
   level_ = level;
 }
 
+void CompositeSearch::narrow() {
+  radius_ = kSmallestRadius;
+}
+
 bool CompositeSearch::ready() const {
   return seen_.size() >= 2 && best() != nullptr;
 }

@@ -53,6 +53,8 @@ class CompositeSearch {
 
   /// The fidelity that is searched from now on.
   void set_level(int level);
+  /// The ball is the smallest from now on: where few evaluations are to come, no time is left to learn.
+  void narrow();
   /// The next batch: points of the space, one column each.
   /// @param count  how many; 0: as the options and the patience of the search say.
   /// @throws std::logic_error if the search is not ready.

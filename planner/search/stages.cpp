@@ -334,6 +334,7 @@ void StagedSearch::search_reports() {
   int made = int(trials.size());
   compare(std::move(trials), "report");
   search_.set_level(level_of(kReport));
+  search_.narrow();
   while (made < reports_ && search_.ready()) {
     const int count = std::min(reports_ - made, kReportBatch);
     if (made >= least && !budget_.holds(count)) break;

@@ -9,7 +9,7 @@ fail() { echo "FAILED: $*" >&2; failures=$((failures + 1)); }
 run() { "$program" "$@" >"$work/stdout" 2>"$work/stderr" || fail "exit $?: $*: $(head -c 400 "$work/stderr")"; }
 has() { for key in "$@"; do grep -qF "\"$key\"" "$work/stdout" || fail "no $key in the result"; done; }
 
-run check "$source"/cases/*.json
+run check "$source"/cases/*.json "$source"/tests/bench/cases/*.json
 run schema
 has grippers joint_offset
 run explain grippers
