@@ -38,8 +38,6 @@ class CmaEs : public Method {
 
   [[nodiscard]] int dimension() const { return int(mean_.size()); }
   [[nodiscard]] int population() const { return population_; }
-  /// The points of the last generation.
-  [[nodiscard]] const Eigen::MatrixXd& generation_points() const { return folded_; }
   [[nodiscard]] Eigen::VectorXd mean() const;  ///< folded into the box
   [[nodiscard]] double sigma() const { return sigma_; }
   /// Why there is no point in going on; empty if there is.

@@ -43,6 +43,19 @@ double error_at(const FieldModel& model, const Eigen::VectorXd& place, int level
   return (model.predict(place).fields - fields_at(place, level, bend)).lpNorm<Eigen::Infinity>();
 }
 
+/// Leaving one out is the model of all others. These have another mean and other lengths, so only about.
+void expect_left_out(const FieldModel& whole, std::vector<Observation> list, std::ptrdiff_t k) {
+  const Observation one = list[size_t(k)];
+  const FieldModel::Miss left_out = whole.left_out(k);
+  list.erase(list.begin() + k);
+  const Kernel kernel = whole.kernel();
+  const FieldModel others(all_of(list), kScale, one.level, &kernel, 1);
+  const FieldModel::Prediction prediction = others.predict(one.place);
+  const Eigen::VectorXd miss = one.fields - prediction.fields;
+  EXPECT_LE((miss - left_out.fields).norm(), 0.3 * miss.norm());
+  EXPECT_NEAR(prediction.spread, left_out.spread, 0.3 * left_out.spread);
+}
+
 TEST(FieldModel, LearnsWhatIsNearlyLinearFromAFewPlaces) {
   const Eigen::VectorXd place = Eigen::VectorXd::Constant(kPlaces, 0.4);
   const std::vector<Observation> few = observations(12, 0, 0.2), many = observations(60, 0, 0.2);
@@ -63,17 +76,8 @@ TEST(FieldModel, SpreadGrowsWithTheDistance) {
 }
 
 TEST(FieldModel, LeavingOneOutIsTheModelOfAllOthers) {
-  std::vector<Observation> list = observations(15, 0, 0.3);
-  const FieldModel whole(all_of(list), kScale, 0, nullptr, 1);
-  const Kernel kernel = whole.kernel();
-  const FieldModel::Miss left_out = whole.left_out(7);
-  const Observation one = list[7];
-  list.erase(list.begin() + 7);
-  const FieldModel others(all_of(list), kScale, 0, &kernel, 1);
-  // The others have another mean and other lengths, so only about the same.
-  const Eigen::VectorXd miss = one.fields - others.predict(one.place).fields;
-  EXPECT_LE((miss - left_out.fields).norm(), 0.3 * miss.norm());
-  EXPECT_NEAR(others.predict(one.place).spread, left_out.spread, 0.3 * left_out.spread);
+  const std::vector<Observation> list = observations(15, 0, 0.3);
+  expect_left_out(FieldModel(all_of(list), kScale, 0, nullptr, 1), list, 7);
 }
 
 TEST(FieldModel, ACheaperLevelTeachesTheNextOne) {
@@ -95,13 +99,7 @@ TEST(FieldModel, LevelsAreToldApart) {
   const Kernel kernel{.linear = 0.6, .length = 1.4, .noise = 0.003, .shared = 0.8};
   const FieldModel cheap(all_of(list), kScale, 0, &kernel, 1), fine(all_of(list), kScale, 1, &kernel, 1);
   EXPECT_GT(fine.predict(list[15].place).spread, 1.5 * cheap.predict(list[15].place).spread);
-  const FieldModel::Miss left_out = fine.left_out(22);
-  const Observation one = list[22];
-  list.erase(list.begin() + 22);
-  const FieldModel others(all_of(list), kScale, 1, &kernel, 1);
-  const Eigen::VectorXd miss = one.fields - others.predict(one.place).fields;
-  EXPECT_LE((miss - left_out.fields).norm(), 0.3 * miss.norm());
-  EXPECT_NEAR(others.predict(one.place).spread, left_out.spread, 0.3 * left_out.spread);
+  expect_left_out(fine, list, 22);
 }
 
 TEST(FieldModel, HasTheSameBitsForEveryNumberOfThreads) {
