@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "mapping/polyline.hpp"
+
 namespace drapeplan {
 namespace {
 
@@ -11,12 +13,6 @@ using Eigen::Vector2d;
 
 double cross(const Vector2d& a, const Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
-}
-
-Vector2d nearest_on_segment(const Vector2d& a, const Vector2d& b, const Vector2d& p) {
-  const Vector2d ab = b - a;
-  const double squared = ab.squaredNorm();
-  return a + (squared > 0 ? std::clamp((p - a).dot(ab) / squared, 0.0, 1.0) : 0.0) * ab;
 }
 
 /// On which side of the line from a to b the point lies: -1, 0, 1.
@@ -86,7 +82,7 @@ Vector2d nearest_on_edges(const Polygon& polygon, const Vector2d& point) {
   Vector2d nearest = polygon.front();
   double smallest = std::numeric_limits<double>::infinity();
   for (size_t k = 0; k < polygon.size(); ++k) {
-    const Vector2d candidate = nearest_on_segment(polygon[k], polygon[(k + 1) % polygon.size()], point);
+    const Vector2d candidate = nearest_on_segment(point, polygon[k], polygon[(k + 1) % polygon.size()]).place;
     const double squared = (candidate - point).squaredNorm();
     if (squared < smallest) {
       smallest = squared;

@@ -56,8 +56,9 @@ struct Clock {
     end = request.duration > 0 ? request.duration : (request.schedule ? request.schedule->duration() : 0);
     if (!(end > 0)) throw WrongInput("simulate: neither a schedule nor a duration is given");
     if (model.scene().press) {
-      press = press_times(*model.scene().press, request.schedule, end) / scaling;
-      end = press->end * scaling;
+      const PressTimes times = press_times(*model.scene().press, request.schedule, end);
+      end = request.press ? times.end : times.start;
+      if (request.press) press = times / scaling;
     }
     end /= scaling;
     pause = request.pause > 0 ? request.pause / scaling : end;

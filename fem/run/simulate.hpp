@@ -16,6 +16,7 @@ struct RunRequest {
   const Schedule* schedule = nullptr;  ///< needed with a rig: all joints start at the same height
   /// Of the schedule's clock; 0: until the schedule ends [s]. A press comes after it.
   double duration = 0;
+  bool press = true;                   ///< false: the run ends where pressing would begin
   const State* from = nullptr;         ///< goes on from here instead of the flat start
   /// Stops at the first step at or after it, to be continued; 0: never [s, schedule's clock].
   double pause = 0;

@@ -20,19 +20,24 @@ bool has_rigid_links(const RigOptions& rig) {
   return rig.interlinks && !rig.interlinks->stiffness && !interlinks(rig).empty();
 }
 
-/// One more column and row over the same extent; the fixed joint goes to the gripper nearest to its place.
+/// One more line of grippers across the shorter side of the grid over the same extent, and as many across the
+/// other side as fit in its own; the fixed joint goes to the gripper nearest to its place.
 RigOptions denser(RigOptions rig) {
-  const auto finer = [](int count) { return count > 1 ? count + 1 : count; };
-  const int columns = finer(rig.columns), rows = finer(rig.rows);
-  const int longest = std::max(rig.columns, rig.rows);
+  const RigOptions before = rig;
+  const int few = std::min(rig.columns, rig.rows) > 1 ? std::min(rig.columns, rig.rows)
+                                                      : std::max(rig.columns, rig.rows);
+  const double factor = double(few - 1) / few;  // of the spacing
+  constexpr double kRoundOff = 1e-9;
+  const auto finer = [&](int count) { return 1 + int(std::floor((count - 1) / factor + kRoundOff)); };
+  rig.spacing *= factor;
+  rig.columns = finer(rig.columns), rig.rows = finer(rig.rows);
   if (rig.fixed) {
-    const auto moved = [](int index, int count, int more) {
-      return count > 1 ? 1 + int(std::lround(double(index - 1) * (more - 1) / (count - 1))) : index;
+    const Eigen::Vector2d place = before.place(before.gripper_at(*rig.fixed)) / rig.spacing;
+    const auto nearest = [](double from_middle, int count) {
+      return std::clamp(1 + int(std::lround(from_middle + 0.5 * (count - 1))), 1, count);
     };
-    rig.fixed = {moved((*rig.fixed)[0], rig.columns, columns), moved((*rig.fixed)[1], rig.rows, rows)};
+    rig.fixed = {nearest(place.x(), rig.columns), nearest(place.y(), rig.rows)};
   }
-  rig.spacing *= double(longest - 1) / longest;
-  rig.columns = columns, rig.rows = rows;
   if (rig.interlinks) rig.interlinks->lengths.clear();
   return rig;
 }

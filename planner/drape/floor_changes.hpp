@@ -16,9 +16,9 @@ struct FloorChange {
   Case definition;    ///< the case with this change alone
 };
 
-/// Interlinks as mapped, with play, joints at the ply, small pads, one more column and row of grippers over
-/// the same extent, no fixed joint (which also bounds every other place and turn of the ply), other starts of
-/// the mapping. Those that would change nothing are left out.
+/// Interlinks as mapped, with play, joints at the ply, small pads, more grippers over the same extent, no
+/// fixed joint (which also bounds every other place and turn of the ply), other starts of the mapping. Those
+/// that would change nothing are left out.
 /// @param definition  with mold, mapping and grippers.
 std::vector<FloorChange> floor_changes(const Case& definition);
 

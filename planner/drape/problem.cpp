@@ -256,6 +256,7 @@ Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, i
   request.frames = frames;
   request.from = part.from;
   request.pause = part.pause;
+  request.press = part.press;
   if (frames > 0) request.observe = [&drape](const Snapshot& frame) { drape.frames.push_back(frame); };
   drape.run = simulate(model, request);
   drape.gap = nodal_gaps(drape.run.final, *case_.mold, case_.material.thickness);
@@ -268,6 +269,11 @@ Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, i
   drape.other = OtherScore{takes_after, takes_after ? before : drape.score};
   if (!takes_after) drape.score = before;
   return drape;
+}
+
+Drape DrapeProblem::run_for_objective(const Schedule& schedule, const std::string& fidelity) const {
+  const bool before = case_.press && case_.press->objective == PressOptions::Objective::before;
+  return run(schedule, fidelity, 0, {.press = fidelity == kReport || !before});
 }
 
 Score DrapeProblem::score_at(const Model& model, const RunResult& run, const Snapshot& ply,

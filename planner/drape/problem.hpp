@@ -55,6 +55,7 @@ struct Drape {
 struct RunPart {
   const State* from = nullptr;
   double pause = 0;
+  bool press = true;  ///< where the case has a press
 };
 
 /// The best that any schedule could do with the ply, in numbers and in words.
@@ -93,6 +94,10 @@ class DrapeProblem {
   /// failed run is an invalid score.
   [[nodiscard]] Drape run(const Schedule& schedule, const std::string& fidelity, int frames = 0,
                           RunPart part = {}) const;
+  /// The same as far as a search needs it: where the objective is taken before pressing, only the reporting
+  /// fidelity presses. Scores are those of the whole run (but for largest strains and lags, which are looked at
+  /// now and then, at other times in a longer run), also where the press would fail.
+  [[nodiscard]] Drape run_for_objective(const Schedule& schedule, const std::string& fidelity) const;
 
  private:
   /// Made by whoever asks first.

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mapping/polyline.hpp"
 #include "planner/drape/scoring.hpp"
 
 namespace drapeplan {
@@ -26,10 +27,7 @@ double distance_near(const Eigen::Vector3d& p, const Points& line, int node, int
   double smallest = std::numeric_limits<double>::infinity();
   for (int offset = -reach; offset < reach; ++offset) {
     const auto k = size_t(((node + offset) % segments + segments) % segments);
-    const Eigen::Vector3d ab = line[k + 1] - line[k];
-    const double length2 = ab.squaredNorm();
-    const double along = length2 > 0 ? std::clamp((p - line[k]).dot(ab) / length2, 0.0, 1.0) : 0.0;
-    smallest = std::min(smallest, (line[k] + along * ab - p).squaredNorm());
+    smallest = std::min(smallest, (nearest_on_segment(p, line[k], line[k + 1]).place - p).squaredNorm());
   }
   return std::sqrt(smallest);
 }

@@ -11,6 +11,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "mapping/polyline.hpp"
+
 namespace drapeplan {
 namespace {
 
@@ -70,28 +72,6 @@ NodalFibres nodal_fibres(const Mesh& mesh, const Snapshot& end) {
   return fibres;
 }
 
-Eigen::Vector3d nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
-                                   const Eigen::Vector3d& b) {
-  const Eigen::Vector3d ab = b - a;
-  const double length2 = ab.squaredNorm();
-  const double along = length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
-  return a + along * ab;
-}
-
-Eigen::Vector3d nearest_on_polyline(const Eigen::Vector3d& p, const Points& line) {
-  Eigen::Vector3d nearest = line.front();
-  double smallest = std::numeric_limits<double>::infinity();
-  for (size_t k = 1; k < line.size(); ++k) {
-    const Eigen::Vector3d candidate = nearest_on_segment(p, line[k - 1], line[k]);
-    const double squared = (candidate - p).squaredNorm();
-    if (squared < smallest) {
-      smallest = squared;
-      nearest = candidate;
-    }
-  }
-  return nearest;
-}
-
 struct OneWay {
   double max = 0, rms = 0;
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
@@ -106,7 +86,7 @@ OneWay one_way(const Points& line, const Points& other) {
     const int parts = std::max(1, int(std::ceil(segment / kEdgeSample)));
     for (int part = 0; part <= parts; ++part) {
       const Eigen::Vector3d from = line[k - 1] + (line[k] - line[k - 1]) * (double(part) / parts);
-      const Eigen::Vector3d to = nearest_on_polyline(from, other);
+      const Eigen::Vector3d to = nearest_on_polyline(from, other).place;
       const double distance = (to - from).norm();
       if (distance > result.max) result = {distance, 0, from, to};
       const double share = part == 0 || part == parts ? 0.5 : 1.0;

@@ -34,10 +34,17 @@ constexpr double kMostSpread = 3;
 constexpr int kGenerations = 60;
 /// First step of these, of the radius.
 constexpr double kInnerStep = 0.3;
-/// Price of leaving the ball, per radius: more than any objective falls on the way.
+/// Points beside another one that are tried until one of them is possible.
+constexpr int kTries = 20;
+/// Price of leaving the ball, per radius, and of what is not possible: more than any objective falls on the
+/// way.
 constexpr double kOutside = 1e3;
 /// The kernel is chosen anew when there is so much more to choose from.
 constexpr double kMoreObservations = 1.15;
+
+bool is_possible(const SearchSpace& space, const Eigen::VectorXd& point) {
+  return !space.possible || space.possible(point);
+}
 
 }  // namespace
 
@@ -134,8 +141,17 @@ CompositeSearch::Expectation CompositeSearch::expectation() {
   return e;
 }
 
-/// The point of the ball with the lowest expectation, by CMA-ES from the best observation.
+/// Whether points are possible is asked for all of them only where the best of all is not.
 Eigen::VectorXd CompositeSearch::minimise(const Expectation& e, const SearchSpace& space, double radius) {
+  SearchSpace everywhere = space;
+  everywhere.possible = {};
+  const Eigen::VectorXd best = minimise_over(e, everywhere, radius);
+  return is_possible(space, best) ? best : minimise_over(e, space, radius);
+}
+
+/// The point of the ball with the lowest expectation, by CMA-ES from the best observation.
+Eigen::VectorXd CompositeSearch::minimise_over(const Expectation& e, const SearchSpace& space,
+                                               double radius) {
   const Eigen::VectorXd start = space.nearest_point(e.around.place);
   const double reach = radius * std::sqrt(double(e.around.place.size()));
   CmaEs inner(start, {.sigma0 = kInnerStep * reach / std::sqrt(double(space.dimension)), .seed = bits_()});
@@ -144,14 +160,17 @@ Eigen::VectorXd CompositeSearch::minimise(const Expectation& e, const SearchSpac
   for (int generation = 0; generation < kGenerations && inner.stop_reason().empty(); ++generation) {
     const Eigen::MatrixXd points = inner.ask();
     Eigen::VectorXd values(points.cols());
+    std::vector<char> possible(size_t(points.cols()));
     const auto expect = [&](int k) {
       const Eigen::VectorXd place = space.place(points.col(k));
       const double outside = (place - e.around.place).norm() / reach - 1;
       values[k] = e.at(place) + kOutside * std::max(outside, 0.0);
+      possible[size_t(k)] = is_possible(space, points.col(k));
     };
     parallel_for(int(points.cols()), expect, options_.threads);
     for (Eigen::Index k = 0; k < points.cols(); ++k) {
-      if (values[k] < lowest) lowest = values[k], best = points.col(k);
+      if (possible[size_t(k)] && values[k] < lowest) lowest = values[k], best = points.col(k);
+      if (!possible[size_t(k)]) values[k] += kOutside;
     }
     inner.tell(values);
   }
@@ -159,10 +178,15 @@ Eigen::VectorXd CompositeSearch::minimise(const Expectation& e, const SearchSpac
 }
 
 Eigen::VectorXd CompositeSearch::beside(const Eigen::VectorXd& point, const SearchSpace& space) {
-  Eigen::VectorXd step(space.dimension);
-  for (double& x : step) x = standard_normal(bits_);
   const double length = kBeside * radius_ * std::sqrt(double(space.dimension));
-  return (point + step * (length / step.norm())).cwiseMax(0).cwiseMin(1);
+  Eigen::VectorXd beside;
+  for (int k = 0; k < kTries; ++k) {
+    Eigen::VectorXd step(space.dimension);
+    for (double& x : step) x = standard_normal(bits_);
+    beside = (point + step * (length / step.norm())).cwiseMax(0).cwiseMin(1);
+    if (is_possible(space, beside)) break;
+  }
+  return beside;
 }
 
 Eigen::MatrixXd CompositeSearch::ask(const SearchSpace& space, int count) {

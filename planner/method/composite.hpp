@@ -22,6 +22,8 @@ struct SearchSpace {
   Eigen::Index dimension = 0;
   std::function<Eigen::VectorXd(const Eigen::VectorXd& point)> place;
   std::function<Eigen::VectorXd(const Eigen::VectorXd& place)> nearest_point;
+  /// Whether a point is worth an evaluation: false where it is known to fail. Empty: all are.
+  std::function<bool(const Eigen::VectorXd& point)> possible = {};
 };
 
 struct CompositeOptions {
@@ -71,6 +73,8 @@ class CompositeSearch {
   [[nodiscard]] Expectation expectation();
   [[nodiscard]] Eigen::VectorXd minimise(const Expectation& expectation, const SearchSpace& space,
                                          double radius);
+  [[nodiscard]] Eigen::VectorXd minimise_over(const Expectation& expectation, const SearchSpace& space,
+                                              double radius);
   [[nodiscard]] Eigen::VectorXd beside(const Eigen::VectorXd& point, const SearchSpace& space);
 
   ObjectiveNear objective_;

@@ -3,7 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+
+#include "mapping/polyline.hpp"
 
 namespace drapeplan {
 namespace {
@@ -14,29 +17,7 @@ constexpr double kCorner = 20 * std::numbers::pi / 180;
 /// [m]: a node whose nearest point lies nearer to a corner than this minds both of its sides.
 constexpr double kCornerReach = 0.010;
 
-/// Nearest point of a closed polyline (first point repeated at the end).
-struct Nearest {
-  size_t segment = 0;  ///< from point `segment` to the next one
-  double along = 0;    ///< 0 to 1
-  Eigen::Vector3d place{0, 0, 0};
-};
-
-Nearest nearest_on(const std::vector<Eigen::Vector3d>& line, const Eigen::Vector3d& x) {
-  Nearest nearest;
-  double smallest = kInfinity;
-  for (size_t k = 0; k + 1 < line.size(); ++k) {
-    const Eigen::Vector3d way = line[k + 1] - line[k];
-    const double squared_length = way.squaredNorm();
-    const double along =
-        squared_length > 0 ? std::clamp((x - line[k]).dot(way) / squared_length, 0.0, 1.0) : 0.0;
-    const Eigen::Vector3d place = line[k] + along * way;
-    const double squared = (x - place).squaredNorm();
-    if (squared >= smallest) continue;
-    smallest = squared;
-    nearest = {k, along, place};
-  }
-  return nearest;
-}
+using Nearest = OnPolyline<Eigen::Vector3d>;
 
 class Boundary {
  public:
@@ -59,7 +40,7 @@ class Boundary {
     const Eigen::Vector3d before = direction(k + segments() - 1), after = direction(k);
     return std::atan2(before.cross(after).dot(normal(line_[k % segments()])), before.dot(after));
   }
-  [[nodiscard]] Nearest nearest(const Eigen::Vector3d& x) const { return nearest_on(line_, x); }
+  [[nodiscard]] Nearest nearest(const Eigen::Vector3d& x) const { return nearest_on_polyline(x, line_); }
   [[nodiscard]] const Eigen::Vector3d& point(size_t k) const { return line_[k % segments()]; }
 
   /// The corner within reach of a nearest point, if there is one; else segments().

@@ -107,13 +107,14 @@ Knot furthest_apart(const Schedule& schedule, int a, int b, const std::set<doubl
 void add_stretched_interlinks(const Schedule& schedule, const RigOptions& rig,
                               std::vector<std::string>& refusals) {
   if (!rig.interlinks || rig.interlinks->stiffness) return;
-  std::set<double> times;
-  for (const auto& path : schedule.paths) {
-    for (const Knot& knot : path) times.insert({knot.time, knot.time + schedule.blend_time});
-  }
   const auto links = interlinks(rig);
   for (size_t k = 0; k < links.size(); ++k) {
     const auto [a, b] = links[k];
+    std::set<double> times;
+    for (const int g : {a, b}) {
+      for (const Knot& knot : schedule.paths[size_t(g)])
+        times.insert({knot.time, knot.time + schedule.blend_time});
+    }
     const Knot apart = furthest_apart(schedule, a, b, times);
     if (!(std::abs(apart.z) > longest(rig, k) * (1 + kRounding))) continue;
     refusals.push_back(

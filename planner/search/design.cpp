@@ -109,7 +109,7 @@ class JointSpace {
           to_schedule(problem->frame(), family.decode(x.tail<WaveFamily::kDimension>()));
       if (const auto refusals = rig_refusals(schedule, *problem->definition().grippers); !refusals.empty())
         throw WrongInput(refusals.front());
-      return outcome_of(problem->run(schedule, fidelity));
+      return outcome_of(problem->run_for_objective(schedule, fidelity));
     });
   }
 

@@ -119,7 +119,8 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
     if (const auto refusals = rig_refusals(schedule, *problem.definition().grippers); !refusals.empty())
       throw WrongInput(refusals.front());
     const bool report = fidelity == kReport;
-    Drape drape = problem.run(schedule, fidelity, report ? kFrames : 0);
+    Drape drape = report ? problem.run(schedule, fidelity, kFrames)
+                         : problem.run_for_objective(schedule, fidelity);
     Outcome outcome = outcome_of(drape);
     outcome.fields = problem.score_fields_of(drape, fidelity);
     if (report) reported.offer(schedule_hash(schedule), std::move(drape));

@@ -12,6 +12,7 @@
 #include "planner/base/statistics.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/method/nlopt.hpp"
+#include "planner/schedule/check.hpp"
 #include "planner/schedule/families.hpp"
 #include "planner/search/finalists.hpp"
 #include "planner/search/interrupted.hpp"
@@ -200,7 +201,10 @@ const Trial* StagedSearch::best_at(const std::string& fidelity) const {
 SearchSpace StagedSearch::space_of(const StrokeFamily& family) const {
   return {family.dimension(),
           [&](const Eigen::VectorXd& point) { return grippers_.encode(family.decode(point)); },
-          [&](const Eigen::VectorXd& place) { return family.encode(grippers_.decode(place)); }};
+          [&](const Eigen::VectorXd& place) { return family.encode(grippers_.decode(place)); },
+          [&](const Eigen::VectorXd& point) {
+            return rig_refusals(to_schedule(frame_, family.decode(point)), frame_.rig).empty();
+          }};
 }
 
 void StagedSearch::try_points(const Eigen::MatrixXd& points, const StrokeFamily& family, size_t rung,

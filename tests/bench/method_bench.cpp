@@ -2,7 +2,8 @@
 // subjects, from the same starts, with equal budgets. Usage: method_bench OUT_DIR [--seeds N] [--evaluations
 // N] [--threads N] [CASE...] Without cases: functions of starts and heights with a known optimum and noise.
 // Cases are played at their cheapest fidelity. Writes methods.csv (one line per subject, method, seed and
-// checkpoint) and profile.svg, prints a table.
+// checkpoint) and profile.svg, prints a table. What was found is kept in traces.jsonl: a bench that was
+// stopped, or that is given more seeds, goes on.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -16,8 +17,11 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "planner/base/parallel.hpp"
@@ -128,7 +132,7 @@ Subject case_subject(const std::string& file) {
   const std::string fidelity = plan_ladder(problem->definition()).front();
   static_cast<void>(problem->model(fidelity));
   const auto told = [problem, fidelity](const Schedule& schedule, unsigned) {
-    const Drape drape = problem->run(schedule, fidelity);
+    const Drape drape = problem->run_for_objective(schedule, fidelity);
     return Seen{drape.score.valid ? drape.score.objective : kInfinity,
                 problem->score_fields_of(drape, fidelity)};
   };
@@ -294,7 +298,6 @@ Chart profile(const Traces& traces, int budget) {
 
 void write_results(const Options& options, const std::vector<Subject>& subjects, const Traces& traces) {
   const std::array<int, 3> marks{options.evaluations / 4, options.evaluations / 2, options.evaluations};
-  std::filesystem::create_directories(options.out);
   std::ofstream csv(std::filesystem::path(options.out) / "methods.csv");
   csv << "subject,method,seed,evaluations,value\n";
   fmt::print("Median of {} seeds after {} evaluations\n\n| subject |", options.seeds, options.evaluations);
@@ -320,21 +323,65 @@ void write_results(const Options& options, const std::vector<Subject>& subjects,
       << line_chart(profile(traces, options.evaluations));
 }
 
+/// Traces that are on disk, by subject, method, seed and length; finished ones are appended as they come.
+class KeptTraces {
+ public:
+  explicit KeptTraces(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);) {
+      const nlohmann::json one = nlohmann::json::parse(line, nullptr, false);
+      if (one.is_discarded()) continue;  // the bench was killed while it wrote this line
+      Trace trace;
+      for (const nlohmann::json& value : one["values"])
+        trace.push_back(value.is_null() ? kInfinity : value.get<double>());
+      known_[{one["subject"], one["method"], one["seed"], trace.size()}] = trace;
+    }
+    out_.open(file, std::ios::app);
+    if (!known_.empty()) out_ << '\n';  // ends a line that was cut off
+  }
+  [[nodiscard]] const Trace* find(const std::string& subject, const std::string& method, unsigned seed,
+                                  int budget) const {
+    const auto found = known_.find({subject, method, seed, size_t(budget)});
+    return found == known_.end() ? nullptr : &found->second;
+  }
+  /// Safe to call concurrently.
+  void keep(const std::string& subject, const std::string& method, unsigned seed, const Trace& trace) {
+    const nlohmann::json line{
+        {"subject", subject}, {"method", method}, {"seed", seed}, {"values", trace}};
+    const std::scoped_lock lock(mutex_);
+    out_ << line.dump() << std::endl;
+    fmt::print(stderr, "{}, {}, seed {}: {:.4g}\n", subject, method, seed, trace.back());
+  }
+
+ private:
+  std::map<std::tuple<std::string, std::string, unsigned, size_t>, Trace> known_;
+  std::ofstream out_;
+  std::mutex mutex_;
+};
+
 int run(const Options& options) {
   std::vector<Subject> subjects;
   for (const std::string& file : options.files) subjects.push_back(case_subject(file));
   if (subjects.empty()) subjects = functions();
-  const int seeds = options.seeds, methods = int(kMethods.size()),
-            jobs = int(subjects.size()) * methods * seeds;
+  std::filesystem::create_directories(options.out);
+  KeptTraces kept(std::filesystem::path(options.out) / "traces.jsonl");
+  const int seeds = options.seeds, methods = int(kMethods.size()), count = int(subjects.size());
   Traces traces(subjects.size(),
                 std::vector<std::vector<Trace>>(kMethods.size(), std::vector<Trace>(size_t(seeds))));
   parallel_for(
-      jobs,
+      count * methods * seeds,
       [&](int job) {
-        const auto seed = size_t(job % seeds), method = size_t(job / seeds % methods),
-                   k = size_t(job / seeds / methods);
-        traces[k][method][seed] =
-            run_method(subjects[k], kMethods[method], unsigned(seed + 1), options.evaluations);
+        const auto method = size_t(job % methods), k = size_t(job / methods % count),
+                   seed = size_t(job / methods / count);
+        const std::string& name = kMethods[method];
+        Trace& trace = traces[k][method][seed];
+        if (const Trace* known =
+                kept.find(subjects[k].name, name, unsigned(seed + 1), options.evaluations)) {
+          trace = *known;
+          return;
+        }
+        trace = run_method(subjects[k], name, unsigned(seed + 1), options.evaluations);
+        kept.keep(subjects[k].name, name, unsigned(seed + 1), trace);
       },
       options.threads);
   write_results(options, subjects, traces);

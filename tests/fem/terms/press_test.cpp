@@ -147,6 +147,11 @@ TEST(Press, KeepsThePlyAsItIsWithoutAndPressesItDown) {
   EXPECT_EQ(pressed.unpressed->warp_strain, plain.final.warp_strain);
   EXPECT_EQ(pressed.state.unpressed_record.actuator_force, plain.state.record.actuator_force);
   EXPECT_NEAR(pressed.final.time, plain.final.time + 1.5, 1e-9);
+  scene.press = pressed_corner().press;
+  const RunResult before = simulate(Model(scene), {.schedule = &schedule, .press = false});
+  EXPECT_EQ(before.summary.status, RunStatus::done);
+  EXPECT_FALSE(before.unpressed);
+  EXPECT_EQ(before.final.position, plain.final.position);
   const auto largest_gap = [&](const Snapshot& ply) {
     double gap = 0;
     for (const Eigen::Vector3d& x : ply.position)

@@ -75,10 +75,16 @@ TEST(DrapeProblem, ScoresThePlyBeforeAndAfterPressing) {
   EXPECT_EQ(with.score.duration, without.score.duration);
   std::vector<std::string> before = kPressed;
   before.emplace_back("press.objective=before");
-  const Drape taken = DrapeProblem(quick_case(before)).run(schedule, "screen");
+  const DrapeProblem before_pressing(quick_case(before));
+  const Drape taken = before_pressing.run(schedule, "screen");
   ASSERT_TRUE(taken.other && !taken.other->before);
   EXPECT_EQ(taken.score.objective, without.score.objective);
   EXPECT_EQ(taken.other->score.objective, with.score.objective);
+  const Drape searched = before_pressing.run_for_objective(schedule, "screen");
+  EXPECT_EQ(searched.score.objective, without.score.objective);
+  EXPECT_FALSE(searched.other);
+  EXPECT_EQ(searched.run.summary.steps, without.run.summary.steps);
+  EXPECT_TRUE(pressed.run_for_objective(schedule, "screen").other);
 }
 
 TEST(DrapeProblem, LetsPadsGoInThePressAtTheLatest) {

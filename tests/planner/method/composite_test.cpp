@@ -100,6 +100,17 @@ TEST(CompositeSearch, HandsOutTheSameForEveryNumberOfThreads) {
   EXPECT_EQ(one.ask(kSpace, 1).cols(), 1);
 }
 
+TEST(CompositeSearch, AsksOnlyForWhatIsPossible) {
+  CompositeSearch search = search_with(true);
+  run(search, 30, true);
+  SearchSpace space = kSpace;
+  const Eigen::VectorXd middle = search.ask(kSpace, 1).col(0);
+  space.possible = [&](const Eigen::VectorXd& x) { return x[0] <= middle[0] - 0.01; };
+  EXPECT_FALSE(space.possible(middle));
+  const Eigen::MatrixXd batch = search.ask(space);
+  for (Eigen::Index k = 0; k < batch.cols(); ++k) EXPECT_TRUE(space.possible(batch.col(k))) << k;
+}
+
 TEST(CompositeSearch, IsReadyOnceThereIsSomethingToLearnFrom) {
   CompositeSearch search = search_with(false);
   EXPECT_FALSE(search.ready());
