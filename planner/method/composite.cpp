@@ -16,7 +16,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Radius of the ball, r.m.s. per coordinate of a place in [0, 1]: first, smallest and largest. A step of the
 /// smallest is well above the noise of a drape.
-constexpr double kFirstRadius = 0.056, kSmallestRadius = 0.028, kLargestRadius = 0.14;
+constexpr double kFirstRadius = 0.1, kSmallestRadius = 0.028, kLargestRadius = 0.14;
 constexpr double kGrow = 1.2, kShrink = 0.9;
 /// The part of the radius at which points lie beside what the model likes best, in coordinates of the space.
 constexpr double kBeside = 0.4;
@@ -52,6 +52,7 @@ struct CompositeSearch::Expectation {
   Observation around;
   std::optional<FieldModel> model;
   std::function<double(const Eigen::VectorXd&)> objective;
+  Eigen::VectorXd correction;           ///< is added to all fields
   std::vector<Eigen::VectorXd> errors;  ///< of fields where one observation is left out
   std::vector<double> spreads;          ///< of these predictions
 
@@ -61,7 +62,8 @@ struct CompositeSearch::Expectation {
     return (objective ? objective(fields.head(last)) : 0) + fields[last];
   }
   [[nodiscard]] double at(const Eigen::VectorXd& place) const {
-    const FieldModel::Prediction prediction = model->predict(place);
+    FieldModel::Prediction prediction = model->predict(place);
+    prediction.fields += correction;
     double sum = 0;
     for (size_t k = 0; k < errors.size(); ++k) {
       const double factor = std::min(prediction.spread / spreads[k], kMostSpread);
@@ -91,11 +93,38 @@ void CompositeSearch::observe(const Eigen::VectorXd& place, int level, const std
   const Eigen::VectorXd own = one.fields.head(Eigen::Index(fields.size()));
   one.fields.tail<1>()[0] = value - (fields.empty() ? 0 : objective_(own)(own));
   if (!one.fields.allFinite()) return;
+  corrected_.push_back(value_of(one));
   seen_.push_back(std::move(one));
+}
+
+double CompositeSearch::value_of(const Observation& one) const {
+  if (one.level != level_ || correction_.size() == 0) return one.value;
+  const Eigen::VectorXd fields = one.fields + correction_;
+  const Eigen::VectorXd own = fields.head(scale_.size());
+  return (scale_.size() > 0 ? objective_(own)(own) : 0) + fields[scale_.size()];
 }
 
 void CompositeSearch::set_level(int level) {
   level_ = level;
+  correction_.resize(0);
+  for (size_t k = 0; k < seen_.size(); ++k) corrected_[k] = value_of(seen_[k]);
+}
+
+void CompositeSearch::aim_at(int level) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(scale_.size() + 1);
+  int count = 0;
+  for (const Observation& there : seen_) {
+    if (there.level != level) continue;
+    for (const Observation& here : seen_) {
+      if (here.level != level_ || here.place != there.place) continue;
+      sum += there.fields - here.fields;
+      ++count;
+    }
+  }
+  set_level(level_);
+  if (count == 0) return;
+  correction_ = sum / count;
+  for (size_t k = 0; k < seen_.size(); ++k) corrected_[k] = value_of(seen_[k]);
 }
 
 void CompositeSearch::narrow() {
@@ -108,14 +137,28 @@ bool CompositeSearch::ready() const {
 
 const Observation* CompositeSearch::best() const {
   const Observation* best = nullptr;
-  for (const Observation& one : seen_) {
-    if (one.level == level_ && (best == nullptr || one.value < best->value)) best = &one;
+  double lowest = kInfinity;
+  for (size_t k = 0; k < seen_.size(); ++k) {
+    if (seen_[k].level == level_ && corrected_[k] < lowest) lowest = corrected_[k], best = &seen_[k];
   }
   return best;
 }
 
+double CompositeSearch::value_at(const Eigen::VectorXd& place) const {
+  for (size_t k = 0; k < seen_.size(); ++k) {
+    if (seen_[k].level == level_ && seen_[k].place == place) return corrected_[k];
+  }
+  return kInfinity;
+}
+
+Eigen::VectorXd CompositeSearch::best_place() const {
+  if (best() == nullptr) throw std::logic_error("CompositeSearch::best_place: nothing was seen");
+  return best()->place;
+}
+
 CompositeSearch::Expectation CompositeSearch::expectation() {
-  Expectation e{*best(), {}, {}, {}, {}};
+  Expectation e{*best(), {}, {}, correction_, {}, {}};
+  if (correction_.size() == 0) e.correction = Eigen::VectorXd::Zero(scale_.size() + 1);
   const auto distance2 = [&](const Observation* one) { return (one->place - e.around.place).squaredNorm(); };
   std::vector<const Observation*> near;
   for (const Observation& one : seen_) near.push_back(&one);
@@ -128,7 +171,7 @@ CompositeSearch::Expectation CompositeSearch::expectation() {
   scale << scale_, 0.1;
   e.model.emplace(near, scale, level_, keep ? &*kernel_ : nullptr, options_.threads);
   if (!keep) kernel_ = e.model->kernel(), kernel_from_ = seen_.size(), kernel_level_ = level_;
-  if (scale_.size() > 0) e.objective = objective_(e.around.fields.head(scale_.size()));
+  if (scale_.size() > 0) e.objective = objective_((e.around.fields + e.correction).head(scale_.size()));
   std::vector<Eigen::Index> pool;
   for (size_t k = 0; k < near.size() && pool.size() < kErrorPool; ++k) {
     if (near[k]->level == level_) pool.push_back(Eigen::Index(k));
@@ -193,7 +236,7 @@ Eigen::MatrixXd CompositeSearch::ask(const SearchSpace& space, int count) {
   if (!ready()) throw std::logic_error("CompositeSearch::ask: there is nothing to learn from");
   Eigen::MatrixXd batch(space.dimension, count > 0 ? count : batch_);
   const Expectation e = expectation();
-  before_ = e.around.value;
+  before_ = value_of(e.around);
   batch.col(0) = minimise(e, space, radius_);
   if (batch.cols() > 1) batch.col(1) = minimise(e, space, 0.5 * radius_);
   for (Eigen::Index k = 2; k < batch.cols(); ++k) batch.col(k) = beside(batch.col(k % 2), space);
@@ -202,7 +245,7 @@ Eigen::MatrixXd CompositeSearch::ask(const SearchSpace& space, int count) {
 
 void CompositeSearch::end_batch() {
   if (best() == nullptr) return;
-  const bool gain = best()->value < before_;
+  const bool gain = value_of(*best()) < before_;
   radius_ = std::clamp(radius_ * (gain ? kGrow : kShrink), kSmallestRadius, kLargestRadius);
   without_gain_ = gain ? 0 : without_gain_ + 1;
   if (without_gain_ < kPatience) return;

@@ -53,8 +53,11 @@ class CompositeSearch {
   /// @param fields  as many as the scale has.
   void observe(const Eigen::VectorXd& place, int level, const std::vector<float>& fields, double value);
 
-  /// The fidelity that is searched from now on.
+  /// The fidelity that is searched from now on, for its own sake.
   void set_level(int level);
+  /// What is searched is what is expected to be best at another fidelity: fields are corrected by the mean of
+  /// what they differ by at the places that were seen at both. Without such places nothing is corrected.
+  void aim_at(int level);
   /// The ball is the smallest from now on: where few evaluations are to come, no time is left to learn.
   void narrow();
   /// The next batch: points of the space, one column each.
@@ -65,10 +68,17 @@ class CompositeSearch {
   void end_batch();
 
   [[nodiscard]] bool ready() const;  ///< there are two observations, one at this level
+  /// The corrected value of a place that was seen at this level; infinite if it was not.
+  [[nodiscard]] double value_at(const Eigen::VectorXd& place) const;
+  /// Of the places seen at this level the one with the lowest (corrected) value. @throws std::logic_error if
+  /// there is none.
+  [[nodiscard]] Eigen::VectorXd best_place() const;
 
  private:
   /// The model of one batch: what is expected of a place, around the best one.
   struct Expectation;
+  [[nodiscard]] double value_of(const Observation& one) const;
+  /// Of those at the searched level the lowest corrected value; null if there is none.
   [[nodiscard]] const Observation* best() const;
   [[nodiscard]] Expectation expectation();
   [[nodiscard]] Eigen::VectorXd minimise(const Expectation& expectation, const SearchSpace& space,
@@ -81,7 +91,9 @@ class CompositeSearch {
   Eigen::VectorXd scale_;
   CompositeOptions options_;
   std::vector<Observation> seen_;
+  std::vector<double> corrected_;  ///< their values; of other levels than the searched one as they were
   int level_ = 0;
+  Eigen::VectorXd correction_;  ///< of fields, and of what they do not explain; empty: none
   std::optional<Kernel> kernel_;
   size_t kernel_from_ = 0;  ///< how many observations the kernel was chosen from
   int kernel_level_ = 0;

@@ -11,26 +11,61 @@
 namespace drapeplan {
 namespace {
 
-/// Of candidates that may win: first those that ran to their end, of these those whose commands were
-/// followed.
-bool ranks_before(const Outcome& a, const Outcome& b) {
-  const double of_a = value_of(a), of_b = value_of(b);
-  if (std::isfinite(of_a) != std::isfinite(of_b)) return std::isfinite(of_a);
-  return a.score.followed != b.score.followed ? a.score.followed : of_a < of_b;
+/// Finalists but the first lag by at most this share of what the first one lags by.
+constexpr double kLessLag = 0.75;
+
+bool outcome_ranks_before(const Outcome& a, const Outcome& b) {
+  return ranks_before(Standing{value_of(a), a.score.followed}, Standing{value_of(b), b.score.followed});
 }
 
 }  // namespace
 
+bool ranks_before(const Standing& a, const Standing& b) {
+  if (std::isfinite(a.objective) != std::isfinite(b.objective)) return std::isfinite(a.objective);
+  return a.followed != b.followed ? a.followed : a.objective < b.objective;
+}
+
+std::vector<Trial> pick_finalists(const SequenceFrame& frame,
+                                  const std::vector<const std::vector<Trial>*>& lists,
+                                  std::vector<Schedule> known, int count) {
+  std::vector<Trial> finalists;
+  const auto add_if_new = [&](const Trial& trial) {
+    Schedule schedule = to_schedule(frame, trial.strokes);
+    const bool seen = std::any_of(known.begin(), known.end(), [&](const Schedule& other) {
+      return nearly_equal(other, schedule);
+    });
+    if (seen) return;
+    finalists.push_back(trial);
+    known.push_back(std::move(schedule));
+  };
+  for (const std::vector<Trial>* list : lists) {
+    std::vector<const Trial*> sorted;
+    for (const Trial& trial : *list) sorted.push_back(&trial);
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Trial* a, const Trial* b) {
+      return ranks_before(a->standing, b->standing);
+    });
+    const auto add_all = [&](double lag) {
+      for (const Trial* trial : sorted) {
+        if (int(finalists.size()) >= count || !trial->ran()) break;
+        if (finalists.empty() || trial->lag <= lag) add_if_new(*trial);
+      }
+    };
+    add_all(sorted.empty() ? 0 : kLessLag * sorted.front()->lag);
+    add_all(std::numeric_limits<double>::infinity());
+  }
+  return finalists;
+}
+
 void conclude(StagedResult& result) {
   std::stable_sort(result.finalists.begin(), result.finalists.end(),
-                   [](const Candidate& a, const Candidate& b) { return ranks_before(a.outcome, b.outcome); });
+                   [](const Candidate& a, const Candidate& b) { return outcome_ranks_before(a.outcome, b.outcome); });
   result.best = result.finalists.front();
   result.best_fidelity = kReport;
-  const Outcome& better_baseline = ranks_before(result.wave.outcome, result.uniform.outcome)
+  const Outcome& better_baseline = outcome_ranks_before(result.wave.outcome, result.uniform.outcome)
                                        ? result.wave.outcome
                                        : result.uniform.outcome;
   const double baseline = value_of(better_baseline), best = value_of(result.best.outcome);
-  result.beats_baselines = ranks_before(result.best.outcome, better_baseline);
+  result.beats_baselines = outcome_ranks_before(result.best.outcome, better_baseline);
   const std::string& name = result.best.name;
   if (!std::isfinite(best)) {
     result.message = fmt::format("no schedule could be evaluated at fidelity \"{}\"", kReport);

@@ -27,6 +27,8 @@ constexpr int kLocalSearches = 2;
 /// over smooth strokes, and the latter over all grippers at the cheaper fidelities (each in so many equal
 /// parts, with a check after each).
 constexpr double kCobylaEnd = 0.08, kSmoothEnd = 0.16, kScreenEnd = 0.5;
+/// Share at which the best are reported for the first time: what follows aims at the reporting fidelity.
+constexpr double kFirstReports = 0.75;
 /// Batches over smooth strokes without a gain after which that is all they have to give.
 constexpr int kSmoothPatience = 12;
 /// Batches that bring nothing new after which there is nothing new.
@@ -36,32 +38,13 @@ constexpr int kScreenParts = 3;
 /// evaluated at a time.
 constexpr double kReportShare = 0.15;
 constexpr int kReportBatch = 2;
-/// Finalists but the first lag by at most this share of what the first one lags by.
-constexpr double kLessLag = 0.75;
 /// So many schedules are compared at two fidelities; where Spearman's correlation of their ranks is below,
 /// the cheaper one is left. They are spread over the ranks of the last so many.
 constexpr size_t kCompared = 8, kComparedOf = 60;
 constexpr double kTrustedCorrelation = 0.7;
 
-/// A candidate before it has a fidelity: strokes and where they come from. One is kept per evaluation, so it
-/// is small: the schedule is made from the strokes where it is needed.
-struct Trial {
-  std::string name;
-  Strokes strokes;
-  double objective = kInfinity;  ///< infinite: failed
-  bool followed = true;
-  double lag = 0;  ///< [m]
-};
-
 bool better(const Trial& a, const Trial& b) {
-  return a.objective < b.objective;
-}
-
-/// Of candidates that may win: first those that ran to their end, of these those whose commands were
-/// followed.
-bool ranks_before(const Trial& a, const Trial& b) {
-  if (std::isfinite(a.objective) != std::isfinite(b.objective)) return std::isfinite(a.objective);
-  return a.followed != b.followed ? a.followed : better(a, b);
+  return a.objective() < b.objective();
 }
 
 class StagedSearch {
@@ -87,7 +70,7 @@ class StagedSearch {
     budget_.reserve(reports_, kReportBatch);
     try {
       search_waves();
-      if (std::isfinite(best_at(options_.ladder.front())->objective)) {
+      if (best_at(options_.ladder.front())->ran()) {
         search_smooth();
         search_grippers();
       }
@@ -109,19 +92,19 @@ class StagedSearch {
                     int patience = std::numeric_limits<int>::max());
   bool climb(size_t rung);
   double compare_fidelities(size_t rung);
-  void try_points(const Eigen::MatrixXd& points, const StrokeFamily& family, size_t rung,
-                  const std::string& stage, Eigen::VectorXd* values = nullptr);
+  Eigen::VectorXd try_points(const Eigen::MatrixXd& points, const StrokeFamily& family, size_t rung,
+                             const std::string& stage);
   SearchSpace space_of(const StrokeFamily& family) const;
   int level_of(const std::string& fidelity) const;
   double spent() const { return (budget_.spent() - begin_) / (1 - begin_); }
   void search_reports();
+  void report_best();
   void compare(std::vector<Trial> trials, const std::string& stage);
 
   Schedule schedule_of(const Trial& trial) const { return to_schedule(frame_, trial.strokes); }
   std::vector<Outcome> evaluate(std::vector<Trial>& trials, const std::string& fidelity,
                                 const std::string& stage, bool report = false);
   void record(const Trial& trial, const std::string& fidelity, const std::string& stage);
-  std::vector<Trial> pick_finalists(int count) const;
   const Trial* best_at(const std::string& fidelity) const;
   void conclude_early();
 
@@ -133,7 +116,8 @@ class StagedSearch {
   double begin_ = 0;                                  // share of the budget that was spent on the waves
   StrokeFamily smooth_, grippers_;                    // places of the search are those of the latter
   CompositeSearch search_;
-  int reports_ = 0;  ///< that are made in the end
+  int reports_ = 0;  ///< that are made, beside the baselines
+  int made_ = 0;     ///< of them so far
   std::map<std::string, double> best_;
   std::set<std::pair<std::uint64_t, std::string>> seen_;
   StagedResult result_;
@@ -146,28 +130,27 @@ std::vector<Outcome> StagedSearch::evaluate(std::vector<Trial>& trials, const st
   std::vector<Outcome> outcomes = evaluate_(schedules, fidelity, stage);
   budget_.count(stage, fidelity, outcomes, report);
   for (size_t k = 0; k < trials.size(); ++k) {
-    trials[k].objective = value_of(outcomes[k]);
-    trials[k].followed = outcomes[k].score.followed;
+    trials[k].standing = {value_of(outcomes[k]), outcomes[k].score.followed};
     trials[k].lag = outcomes[k].score.max_lag;
     record(trials[k], fidelity, stage);
     // A baseline may lie outside of what is searched: it would be learned at a place that is not its own.
     const Eigen::VectorXd place = grippers_.encode(trials[k].strokes);
     if (nearly_equal(to_schedule(frame_, grippers_.decode(place)), schedules[k]))
-      search_.observe(place, level_of(fidelity), outcomes[k].fields, trials[k].objective);
+      search_.observe(place, level_of(fidelity), outcomes[k].fields, trials[k].objective());
   }
   return outcomes;
 }
 
 void StagedSearch::record(const Trial& trial, const std::string& fidelity, const std::string& stage) {
   double& best = best_.try_emplace(fidelity, kInfinity).first->second;
-  best = std::min(best, trial.objective);
+  best = std::min(best, trial.objective());
   HistoryEntry entry;
   entry.number = int(result_.history.size()) + 1;
   entry.stage = stage;
   entry.fidelity = fidelity;
   entry.schedule_hash = schedule_hash(schedule_of(trial));
-  entry.objective = trial.objective;
-  entry.valid = std::isfinite(trial.objective);
+  entry.objective = trial.objective();
+  entry.valid = trial.ran();
   entry.best_so_far = best;
   if (seen_.insert({entry.schedule_hash, fidelity}).second) {
     ++result_.evaluations;
@@ -207,17 +190,18 @@ SearchSpace StagedSearch::space_of(const StrokeFamily& family) const {
           }};
 }
 
-void StagedSearch::try_points(const Eigen::MatrixXd& points, const StrokeFamily& family, size_t rung,
-                              const std::string& stage, Eigen::VectorXd* values) {
+/// @return their objectives.
+Eigen::VectorXd StagedSearch::try_points(const Eigen::MatrixXd& points, const StrokeFamily& family,
+                                         size_t rung, const std::string& stage) {
   std::vector<Trial> trials;
   for (Eigen::Index k = 0; k < points.cols(); ++k) {
     const size_t number = result_.history.size() + size_t(k) + 1;
     trials.push_back({fmt::format("{} {}", stage, number), family.decode(points.col(k))});
   }
   evaluate(trials, options_.ladder[rung], stage);
-  if (values == nullptr) return;
-  values->resize(points.cols());
-  for (Eigen::Index k = 0; k < points.cols(); ++k) (*values)[k] = trials[size_t(k)].objective;
+  Eigen::VectorXd values(points.cols());
+  for (Eigen::Index k = 0; k < points.cols(); ++k) values[k] = trials[size_t(k)].objective();
+  return values;
 }
 
 /// COBYLA from the best waves is ahead of all others at first; then the model has seen enough.
@@ -235,9 +219,7 @@ void StagedSearch::search_smooth() {
   while (spent() < kCobylaEnd && cobyla.stop_reason().empty()) {
     const Eigen::MatrixXd points = cobyla.ask();
     if (points.cols() == 0) break;
-    Eigen::VectorXd values;
-    try_points(points, smooth_, 0, "smooth", &values);
-    cobyla.tell(values);
+    cobyla.tell(try_points(points, smooth_, 0, "smooth"));
   }
   search_until(kSmoothEnd, smooth_, 0, "smooth", kSmoothPatience);
 }
@@ -248,6 +230,7 @@ void StagedSearch::search_until(double share, const StrokeFamily& family, size_t
                                 const std::string& stage, int patience) {
   const std::string& fidelity = options_.ladder[rung];
   search_.set_level(int(rung));
+  search_.aim_at(int(rung) + 1);
   for (int stale = 0, idle = 0; spent() < share && search_.ready() && stale < patience && idle < kIdle;) {
     const double before = best_[fidelity];
     const int known = result_.evaluations;
@@ -261,6 +244,8 @@ void StagedSearch::search_until(double share, const StrokeFamily& family, size_t
 void StagedSearch::search_grippers() {
   size_t rung = 0;
   while (rung + 1 < options_.ladder.size() && climb(rung)) ++rung;
+  search_until(kFirstReports, grippers_, rung, "gripper");
+  report_best();
   search_until(1, grippers_, rung, "gripper");
 }
 
@@ -276,75 +261,63 @@ bool StagedSearch::climb(size_t rung) {
     if (spent() < 1 && !(compare_fidelities(rung) >= kTrustedCorrelation)) break;
   }
   const Trial* best = best_at(options_.ladder[rung + 1]);
-  return best != nullptr && std::isfinite(best->objective);
+  return best != nullptr && best->ran();
 }
 
 /// Evaluates some of the better recent schedules of a fidelity at the next one, too.
-/// @return Spearman's correlation of their ranks; NaN if there is none.
+/// @return Spearman's correlation of their ranks, corrected by what they differ by; NaN if there is none.
 double StagedSearch::compare_fidelities(size_t rung) {
   const std::vector<Trial>& here = trials_[options_.ladder[rung]];
   std::vector<Trial> recent(here.end() - std::ptrdiff_t(std::min(here.size(), kComparedOf)), here.end());
   std::stable_sort(recent.begin(), recent.end(), better);
   const size_t half = (recent.size() + 1) / 2, count = std::min(half, kCompared);
   std::vector<Trial> chosen;
-  std::vector<double> before, after;
-  for (size_t k = 0; k < count; ++k) {
+  for (size_t k = 0; k < count; ++k)
     chosen.push_back(recent[count > 1 ? k * (half - 1) / (count - 1) : 0]);
-    before.push_back(chosen.back().objective);
-  }
   evaluate(chosen, options_.ladder[rung + 1], "gripper");
-  for (const Trial& trial : chosen) after.push_back(trial.objective);
+  search_.aim_at(int(rung) + 1);
+  std::vector<double> before, after;
+  for (const Trial& trial : chosen) {
+    before.push_back(search_.value_at(grippers_.encode(trial.strokes)));
+    after.push_back(trial.objective());
+  }
   return spearman(before, after);
 }
 
-/// The best few that differ from each other and from the baselines, of the finest fidelity that has some. All
-/// but the first lag less: at the next fidelity joints may lag more, and then none would be followed.
-std::vector<Trial> StagedSearch::pick_finalists(int count) const {
-  std::vector<Trial> finalists;
-  std::vector<Schedule> schedules{result_.uniform.schedule, result_.wave.schedule};
-  const auto add_if_new = [&](const Trial& trial) {
-    Schedule schedule = schedule_of(trial);
-    if (std::any_of(schedules.begin(), schedules.end(),
-                    [&](const Schedule& other) { return nearly_equal(other, schedule); }))
-      return;
-    finalists.push_back(trial);
-    schedules.push_back(std::move(schedule));
-  };
-  const auto wanted = size_t(std::max(count, 0));
-  for (auto fidelity = options_.ladder.rbegin(); fidelity != options_.ladder.rend(); ++fidelity) {
-    const auto list = trials_.find(*fidelity);
-    if (list == trials_.end()) continue;
-    std::vector<const Trial*> sorted;
-    for (const Trial& trial : list->second) sorted.push_back(&trial);
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [](const Trial* a, const Trial* b) { return ranks_before(*a, *b); });
-    const auto add_all = [&](double lag) {
-      for (const Trial* trial : sorted) {
-        if (finalists.size() >= wanted || !std::isfinite(trial->objective)) break;
-        if (finalists.empty() || trial->lag <= lag) add_if_new(*trial);
-      }
-    };
-    add_all(sorted.empty() ? 0 : kLessLag * sorted.front()->lag);
-    add_all(kInfinity);
+/// Evaluates the best of the search at the reporting fidelity. The first time these are the best where they were
+/// searched; then what they have taught is used.
+void StagedSearch::report_best() {
+  const int count = std::min(options_.optimise.finalists - made_, kReportBatch);
+  if (count <= 0) return;
+  std::vector<const std::vector<Trial>*> lists;
+  std::vector<Trial> expected;
+  if (made_ > 0 && search_.ready()) {
+    const std::string name = fmt::format("report {}", result_.history.size() + 1);
+    expected.push_back({name, grippers_.decode(search_.best_place()), {0, true}});
+    lists.push_back(&expected);
   }
-  return finalists;
+  for (auto fidelity = options_.ladder.rbegin(); fidelity != options_.ladder.rend(); ++fidelity)
+    lists.push_back(&trials_[*fidelity]);
+  std::vector<Schedule> known;
+  for (const Candidate& candidate : result_.finalists) known.push_back(candidate.schedule);
+  std::vector<Trial> trials = pick_finalists(frame_, lists, std::move(known), count);
+  made_ += int(trials.size());
+  compare(std::move(trials), "report");
 }
 
 /// The reporting fidelity is the last step of the ladder: first the best of the search are evaluated there,
 /// then what the model, which has seen these, expects to be best there.
 void StagedSearch::search_reports() {
   const int least = options_.optimise.finalists + kExpected;
-  std::vector<Trial> trials = pick_finalists(std::clamp(least - 1, 1, kReportBatch));
-  int made = int(trials.size());
-  compare(std::move(trials), "report");
+  report_best();
   search_.set_level(level_of(kReport));
   search_.narrow();
-  while (made < reports_ && search_.ready()) {
-    const int count = std::min(reports_ - made, kReportBatch);
-    if (made >= least && !budget_.holds(count)) break;
+  while (made_ < reports_ && search_.ready()) {
+    const int count = std::min(reports_ - made_, kReportBatch);
+    if (made_ >= least && !budget_.holds(count)) break;
     const Eigen::MatrixXd points = search_.ask(space_of(grippers_), count);
-    made += count;
-    trials.clear();
+    made_ += count;
+    std::vector<Trial> trials;
     for (Eigen::Index k = 0; k < points.cols(); ++k)
       trials.push_back({fmt::format("report {}", result_.history.size() + size_t(k) + 1),
                         grippers_.decode(points.col(k))});
@@ -373,9 +346,10 @@ void StagedSearch::conclude_early() {
   }
   for (auto fidelity = options_.ladder.rbegin(); fidelity != options_.ladder.rend(); ++fidelity) {
     const std::vector<Trial>& list = trials_[*fidelity];
-    const auto best = std::min_element(list.begin(), list.end(),
-                                       [](const Trial& a, const Trial& b) { return ranks_before(a, b); });
-    if (best == list.end() || !std::isfinite(best->objective)) continue;
+    const auto best = std::min_element(list.begin(), list.end(), [](const Trial& a, const Trial& b) {
+      return ranks_before(a.standing, b.standing);
+    });
+    if (best == list.end() || !best->ran()) continue;
     result_.best = {best->name, schedule_of(*best), {}};
     result_.best_fidelity = *fidelity;
     break;

@@ -65,13 +65,13 @@ struct StagedResult {
 /// 2 wave      screens up to nine waves at the cheapest fidelity (`ladder`);
 /// 3 smooth    NLopt's COBYLA over StrokeFamily with smooth starts and heights, from the best waves; then
 ///             CompositeSearch over the same, which knows all evaluations so far;
-/// 4 gripper   CompositeSearch over a start and a height of each gripper. It climbs from the cheapest
-/// fidelity
+/// 4 gripper   CompositeSearch over a start and a height of each gripper. It climbs from the cheapest fidelity
 ///             to the finest, when the ranks of a few schedules at both no longer agree, or when the share of
-///             the cheaper one is spent; what it knows from the cheaper ones it keeps;
-/// 5 report    the best of that and the best that lags less, then what the model expects to be best there,
-/// are
-///             evaluated at the reporting fidelity; the best there wins.
+///             the cheaper one is spent; what it knows from the cheaper ones it keeps.
+///             What it seeks is what will be best at the next one, as far as schedules that were seen at both
+///             tell; for the reporting fidelity these are the best two after three quarters of the budget;
+/// 5 report    the best of that, then what the model expects to be best there, are evaluated at the reporting
+///             fidelity; the best there wins.
 /// The result depends on frame, options and evaluate only: not on threads, nor on what was served from a log.
 /// Where the budget is a time, it depends on the clock of the log, too.
 /// @param evaluate  safe to call concurrently. Once it throws Interrupted, the search ends with what it has.

@@ -100,13 +100,52 @@ TEST(CompositeSearch, HandsOutTheSameForEveryNumberOfThreads) {
   EXPECT_EQ(one.ask(kSpace, 1).cols(), 1);
 }
 
+TEST(CompositeSearch, SeeksWhatIsBestAtTheFidelityThatItAimsAt) {
+  // At level 1 the first field is larger by one: there the objective is another one, and so is its optimum.
+  const auto shifted = [](const Eigen::VectorXd& place) {
+    Eigen::VectorXd fields = fields_at(place);
+    fields[0] += 1;
+    return fields;
+  };
+  const auto observe = [](CompositeSearch& search, const Eigen::VectorXd& x, int level, const Eigen::VectorXd& f) {
+    search.observe(x, level, std::vector<float>(f.data(), f.data() + f.size()), objective(f));
+  };
+  CompositeSearch plain = search_with(true), aims = search_with(true);
+  for (CompositeSearch* search : {&plain, &aims}) {
+    for (Eigen::Index k = 0; k < kDimension; ++k) {
+      const Eigen::VectorXd x =
+          Eigen::VectorXd::Constant(kDimension, 0.6) + 0.05 * Eigen::VectorXd::Unit(kDimension, k);
+      observe(*search, x, 0, fields_at(x));
+      if (k < 2) observe(*search, x, 1, shifted(x));
+    }
+  }
+  aims.aim_at(1);
+  const Eigen::VectorXd seen = Eigen::VectorXd::Constant(kDimension, 0.6) + 0.05 * Eigen::VectorXd::Unit(kDimension, 0);
+  EXPECT_NEAR(aims.value_at(seen), objective(shifted(seen)), 1e-5);
+  EXPECT_NEAR(plain.value_at(seen), objective(fields_at(seen)), 1e-5);
+  EXPECT_EQ(aims.value_at(Eigen::VectorXd::Zero(kDimension)), kInfinity);
+  for (int batch = 0; batch < 12; ++batch) {
+    for (CompositeSearch* search : {&plain, &aims}) {
+      const Eigen::MatrixXd x = search->ask(kSpace);
+      for (Eigen::Index k = 0; k < x.cols(); ++k) observe(*search, x.col(k), 0, fields_at(x.col(k)));
+      search->end_batch();
+    }
+  }
+  EXPECT_LT(objective(shifted(aims.best_place())), objective(shifted(plain.best_place())));
+  EXPECT_LT(objective(fields_at(plain.best_place())), objective(fields_at(aims.best_place())));
+  aims.set_level(0);
+  EXPECT_NEAR(aims.value_at(seen), objective(fields_at(seen)), 1e-5);
+}
+
 TEST(CompositeSearch, AsksOnlyForWhatIsPossible) {
   CompositeSearch search = search_with(true);
   run(search, 30, true);
   SearchSpace space = kSpace;
-  const Eigen::VectorXd middle = search.ask(kSpace, 1).col(0);
-  space.possible = [&](const Eigen::VectorXd& x) { return x[0] <= middle[0] - 0.01; };
-  EXPECT_FALSE(space.possible(middle));
+  // Half-way from the best that was seen to what would be asked for, along the first coordinate.
+  const Eigen::VectorXd seen = search.best_place(), wish = search.ask(kSpace, 1).col(0);
+  const double way = wish[0] - seen[0];
+  space.possible = [&](const Eigen::VectorXd& x) { return (x[0] - seen[0]) / way <= 0.5; };
+  EXPECT_FALSE(space.possible(wish));
   const Eigen::MatrixXd batch = search.ask(space);
   for (Eigen::Index k = 0; k < batch.cols(); ++k) EXPECT_TRUE(space.possible(batch.col(k))) << k;
 }
