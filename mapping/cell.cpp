@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace drapeplan {
@@ -75,6 +76,12 @@ Eigen::Vector2d guess(const Mold& mold, const Cell& cell) {
 }
 
 }  // namespace
+
+double middle_shear(const Eigen::Vector3d& p00, const Eigen::Vector3d& p10, const Eigen::Vector3d& p01,
+                    const Eigen::Vector3d& p11) {
+  const Eigen::Vector3d warp = (p10 - p00) + (p11 - p01), weft = (p01 - p00) + (p11 - p10);
+  return std::atan2(warp.dot(weft), warp.cross(weft).norm());  // accurate for small shear
+}
 
 FreeCorner place_free_corner(const Mold& mold, const Cell& cell) {
   const double size = std::min(cell.first_length, cell.second_length);

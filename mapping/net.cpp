@@ -119,15 +119,21 @@ Geodesic chord_step(const Mold& mold, const Eigen::Vector3d& from, const Eigen::
   throw_at("the mold ends, or is too curved for the cells, beyond", from);
 }
 
-// A half line of nodes: indices first, first + stride, ... of the net.
-void lay_half_line(const Mold& mold, const Eigen::Vector2d& direction, double chord, int count, size_t start,
-                   std::ptrdiff_t stride, std::vector<Eigen::Vector3d>& nodes) {
-  Eigen::Vector2d heading = direction;
-  for (int k = 1; k <= count; ++k) {
-    const auto at = static_cast<size_t>(static_cast<std::ptrdiff_t>(start) + k * stride);
-    const auto previous = static_cast<size_t>(static_cast<std::ptrdiff_t>(at) - stride);
-    const Geodesic step = chord_step(mold, nodes[previous], heading, chord);
-    nodes[at] = step.points.back();
+// One of the four lines of nodes from the start.
+struct HalfLine {
+  Eigen::Vector2d direction;  // at the start, in the x-y plane
+  int di = 0, dj = 0;         // to the next node
+  int count = 0;              // of nodes after the start
+  double chord = 0;           // between nodes [m]
+};
+
+// The first so many nodes of a half line along a geodesic.
+void lay_geodesic(const Mold& mold, const HalfLine& line, int count, int i0, int j0, Net& net) {
+  Eigen::Vector2d heading = line.direction;
+  for (int k = 1; k <= std::min(count, line.count); ++k) {
+    const int i = i0 + k * line.di, j = j0 + k * line.dj;
+    const Geodesic step = chord_step(mold, net.node(i - line.di, j - line.dj), heading, line.chord);
+    net.nodes[size_t(i) + size_t(j) * net.u.size()] = step.points.back();
     heading = step.end_direction.head<2>();
   }
 }
@@ -141,21 +147,93 @@ bool is_collapsed(const Cell& cell, const Eigen::Vector3d& corner) {
   return !(a.cross(b).dot(normal) > kSmallestSine * a.norm() * b.norm());
 }
 
+bool has_node(const Net& net, int i, int j) {
+  return i >= 0 && j >= 0 && i < static_cast<int>(net.u.size()) && j < static_cast<int>(net.v.size());
+}
+
+// Places the node (i, j) as the free corner of the cell with the base (i - di, j - dj).
+void place_node(const Mold& mold, int i, int j, int di, int dj, Net& net) {
+  const Cell cell{net.node(i - di, j - dj), net.node(i, j - dj), net.node(i - di, j),
+                  std::abs(net.u[size_t(i)] - net.u[size_t(i - di)]),
+                  std::abs(net.v[size_t(j)] - net.v[size_t(j - dj)])};
+  const FreeCorner corner = place_free_corner(mold, cell);
+  if (!corner.point.allFinite()) throw_at("the mold ends beyond", cell.base);
+  if (is_collapsed(cell, corner.point))
+    throw_at("the net collapses, its shear reaches 90 degrees, beyond", cell.base);
+  net.converged = net.converged && corner.converged;
+  net.nodes[size_t(i) + size_t(j) * net.u.size()] = corner.point;
+}
+
+// Lays a half line whose cells on one side are sheared least, and with it the row on that side.
+class LeastShearLine {
+ public:
+  // (a, b) is the step from the line to the row beside it.
+  LeastShearLine(const Mold& mold, const HalfLine& line, int a, int b, Net& net)
+      : mold_(mold), line_(line), a_(a), b_(b), net_(net) {}
+
+  // Lays the node after (i, j), whose predecessor and whose neighbour in the row are there. The angle by which
+  // the line turns is the lowest point of a parabola through three, of smaller and smaller steps.
+  void lay_after(int i, int j) {
+    const Eigen::Vector3d from = net_.node(i - line_.di, j - line_.dj);
+    const Eigen::Vector2d heading = (net_.node(i, j) - from).head<2>().normalized();
+    double angle = 0;
+    for (double step = kFirstStep; step > kLastStep; step *= kFiner) {
+      const double before = shear_at(i, j, heading, angle - step), here = shear_at(i, j, heading, angle),
+                   after = shear_at(i, j, heading, angle + step);
+      const double bend = before - 2 * here + after;
+      const double shift = bend > 0 ? 0.5 * (before - after) / bend : 0;
+      angle += step * std::clamp(shift, -kLongestShift, kLongestShift);
+    }
+    place(i, j, heading, angle);
+  }
+
+ private:
+  static constexpr double kFirstStep = 0.02, kLastStep = 1e-5, kFiner = 0.1;  // [rad]
+  static constexpr double kLongestShift = 10;                                  // steps
+
+  // Squared shear of the cell beside the step, which is laid for it.
+  double shear_at(int i, int j, const Eigen::Vector2d& heading, double angle) {
+    place(i, j, heading, angle);
+    const int di = line_.di, dj = line_.dj;
+    return std::pow(middle_shear(net_.node(i, j), net_.node(i + di, j + dj), net_.node(i + a_, j + b_),
+                                 net_.node(i + di + a_, j + dj + b_)),
+                    2);
+  }
+
+  void place(int i, int j, const Eigen::Vector2d& heading, double angle) {
+    const int di = line_.di, dj = line_.dj;
+    const Geodesic step =
+        chord_step(mold_, net_.node(i, j), Eigen::Rotation2Dd(angle) * heading, line_.chord);
+    net_.nodes[size_t(i + di) + size_t(j + dj) * net_.u.size()] = step.points.back();
+    place_node(mold_, i + di + a_, j + dj + b_, di + a_, dj + b_, net_);
+  }
+
+  const Mold& mold_;
+  const HalfLine& line_;
+  int a_, b_;
+  Net& net_;
+};
+
+// Lays the lines through the start where they shear least: the first cell is that of the first steps forwards
+// (or backwards, where the start lies at the ply's edge), the lines go on from it in all four directions.
+void lay_least_shear(const Mold& mold, const std::array<HalfLine, 4>& lines, int i0, int j0, Net& net) {
+  const size_t warp = lines[0].count > 0 ? 0 : 2, weft = lines[1].count > 0 ? 1 : 3;
+  const int a = lines[warp].di, b = lines[weft].dj;
+  lay_geodesic(mold, lines[warp], 1, i0, j0, net);
+  lay_geodesic(mold, lines[weft], 1, i0, j0, net);
+  place_node(mold, i0 + a, j0 + b, a, b, net);
+  for (size_t k = 0; k < lines.size(); ++k) {
+    const HalfLine& line = lines[k];
+    LeastShearLine least(mold, line, k % 2 == 0 ? 0 : a, k % 2 == 0 ? b : 0, net);
+    for (int n = k == warp || k == weft ? 1 : 0; n < line.count; ++n)
+      least.lay_after(i0 + n * line.di, j0 + n * line.dj);
+  }
+}
+
 // Fills the quadrant that lies in the direction (di, dj) from the start node, element by element.
 void fill_quadrant(const Mold& mold, int i0, int j0, int di, int dj, Net& net) {
-  const int nu = static_cast<int>(net.u.size()), nv = static_cast<int>(net.v.size());
-  for (int j = j0 + dj; j >= 0 && j < nv; j += dj) {
-    for (int i = i0 + di; i >= 0 && i < nu; i += di) {
-      const Cell cell{net.node(i - di, j - dj), net.node(i, j - dj), net.node(i - di, j),
-                      std::abs(net.u[size_t(i)] - net.u[size_t(i - di)]),
-                      std::abs(net.v[size_t(j)] - net.v[size_t(j - dj)])};
-      const FreeCorner corner = place_free_corner(mold, cell);
-      if (!corner.point.allFinite()) throw_at("the mold ends beyond", cell.base);
-      if (is_collapsed(cell, corner.point))
-        throw_at("the net collapses, its shear reaches 90 degrees, beyond", cell.base);
-      net.converged = net.converged && corner.converged;
-      net.nodes[size_t(i) + size_t(j) * net.u.size()] = corner.point;
-    }
+  for (int j = j0 + dj; has_node(net, i0, j); j += dj) {
+    for (int i = i0 + di; has_node(net, i, j); i += di) place_node(mold, i, j, di, dj, net);
   }
 }
 
@@ -180,18 +258,19 @@ Net map_ply(const Mold& mold, const Ply& ply, const MappingOptions& options) {
   if (!net.nodes[start].allFinite()) throw_at("no mold at the start", net.nodes[start]);
 
   const HalfLines directions = generator_directions(mold, ply.angle, options);
-  const auto lay = [&](size_t k, const Lines& lines, bool forward, std::ptrdiff_t stride) {
-    const int count = forward ? static_cast<int>(lines.at.size()) - 1 - lines.start : lines.start;
-    if (count == 0) return;
-    const double chord =
-        std::abs((forward ? lines.at.back() : lines.at.front()) - lines.at[size_t(lines.start)]) / count;
-    lay_half_line(mold, directions[k], chord, count, start, forward ? stride : -stride, net.nodes);
-  };
-  lay(0, u, true, 1);
-  lay(1, v, true, static_cast<std::ptrdiff_t>(nu));
-  lay(2, u, false, 1);
-  lay(3, v, false, static_cast<std::ptrdiff_t>(nu));
-
+  std::array<HalfLine, 4> half_lines;
+  for (size_t k = 0; k < 4; ++k) {
+    const Lines& lines = k % 2 == 0 ? u : v;
+    const int way = k < 2 ? 1 : -1, count = way > 0 ? static_cast<int>(lines.at.size()) - 1 - lines.start : lines.start;
+    const double whole = std::abs((way > 0 ? lines.at.back() : lines.at.front()) - lines.at[size_t(lines.start)]);
+    half_lines[k] = {directions[k], k % 2 == 0 ? way : 0, k % 2 == 0 ? 0 : way, count, whole / std::max(count, 1)};
+  }
+  if (options.generators == Generators::minimum_shear) {
+    lay_least_shear(mold, half_lines, u.start, v.start, net);
+  } else {
+    const auto all = static_cast<int>(net.nodes.size());
+    for (const HalfLine& line : half_lines) lay_geodesic(mold, line, all, u.start, v.start, net);
+  }
   for (const int dj : {1, -1}) {
     for (const int di : {1, -1}) fill_quadrant(mold, u.start, v.start, di, dj, net);
   }

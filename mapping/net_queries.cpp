@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "mapping/cell.hpp"
 #include "mapping/net.hpp"
 
 namespace drapeplan {
@@ -94,14 +95,8 @@ std::vector<double> shear_field(const Net& net) {
   shear.reserve(net.nodes.size());
   for (int j = 0; j + 1 < nv; ++j) {
     for (int i = 0; i + 1 < nu; ++i) {
-      const Eigen::Vector3d& p00 = net.node(i, j);
-      const Eigen::Vector3d& p10 = net.node(i + 1, j);
-      const Eigen::Vector3d& p01 = net.node(i, j + 1);
-      const Eigen::Vector3d& p11 = net.node(i + 1, j + 1);
-      const Eigen::Vector3d warp = (p10 - p00) + (p11 - p01);
-      const Eigen::Vector3d weft = (p01 - p00) + (p11 - p10);
-      // pi/2 minus the angle between them, accurate for small shear
-      shear.push_back(std::atan2(warp.dot(weft), warp.cross(weft).norm()));
+      shear.push_back(
+          middle_shear(net.node(i, j), net.node(i + 1, j), net.node(i, j + 1), net.node(i + 1, j + 1)));
     }
   }
   return shear;

@@ -41,21 +41,6 @@ double alpha_of(const DampingFields& d, const std::optional<MaterialFields>& mat
   return 2 * d.ratio * frequency;
 }
 
-Fabric fabric_of(const MaterialFields& m) {
-  const bool linear = m.law == 1;
-  Fabric fabric;
-  fabric.thickness = m.thickness;
-  fabric.areal_density = m.areal_density;
-  fabric.transverse_shear_modulus = m.transverse_shear_modulus;
-  fabric.tension = linear ? straight(m.modulus) : stress_table(m.tension);
-  fabric.compression = linear ? straight(m.modulus) : stress_table(m.compression);
-  fabric.shear = linear ? straight(m.shear_modulus) : stress_table(m.shear);
-  fabric.shear_measure = ShearMeasure(m.shear_measure);
-  fabric.rate_floor = m.rate_floor;
-  fabric.rate_filter = m.rate_filter;
-  return fabric;
-}
-
 /// Tables that are straight lines through strain 1 are stated as the linear law, so that moduli keep their
 /// names.
 MaterialFields material_fields(const Fabric& fabric, const MaterialNotes& notes) {
@@ -147,6 +132,21 @@ StressTable stress_table(const CurveFields& fields) {
   }
   if (table.rates.size() == 1) table.rates.clear();
   return table;
+}
+
+Fabric fabric_of(const MaterialFields& m) {
+  const bool linear = m.law == 1;
+  Fabric fabric;
+  fabric.thickness = m.thickness;
+  fabric.areal_density = m.areal_density;
+  fabric.transverse_shear_modulus = m.transverse_shear_modulus;
+  fabric.tension = linear ? straight(m.modulus) : stress_table(m.tension);
+  fabric.compression = linear ? straight(m.modulus) : stress_table(m.compression);
+  fabric.shear = linear ? straight(m.shear_modulus) : stress_table(m.shear);
+  fabric.shear_measure = ShearMeasure(m.shear_measure);
+  fabric.rate_floor = m.rate_floor;
+  fabric.rate_filter = m.rate_filter;
+  return fabric;
 }
 
 void complete_case(CaseFields& fields) {

@@ -48,9 +48,10 @@ void visit_grip(FieldVisitor& v, GripOptions& grip) {
 
 void visit_mapping(FieldVisitor& v, MappingOptions& m) {
   v.field(
-      {"generators", choice(m.generators, {"perpendicular", "axes", "mid_sides"}),
+      {"generators", choice(m.generators, {"perpendicular", "axes", "mid_sides", "minimum_shear"}),
        "Fibre lines through the start point: geodesics at right angles; along the projected warp and weft; "
-       "towards the mid-sides of the mold"});
+       "towards the mid-sides of the mold; or, at right angles at the start, where the cells beside each step are "
+       "sheared least"});
   Field start{"start", &m.start, "Point (x, y) of the mold where the mapping starts", Dimension::length};
   start.default_words = "ply.position";
   v.field(start);

@@ -78,6 +78,9 @@ void complete_ply(CaseFields& fields);
 /// The table that a mode's fields state; @param fields  without errors.
 StressTable stress_table(const CurveFields& fields);
 
+/// The fabric that a material's fields state; @param fields  without errors.
+Fabric fabric_of(const MaterialFields& fields);
+
 /// Fields into a case and back. `complete` expects fields without errors.
 void complete_case(CaseFields& fields);
 CaseFields fields_of(const Case& definition);

@@ -13,7 +13,7 @@
 #include "planner/base/output_folder.hpp"
 #include "planner/case/case.hpp"
 #include "planner/case/file.hpp"
-#include "planner/cli/failure.hpp"
+#include "planner/cli/process.hpp"
 
 namespace drapeplan {
 
@@ -38,6 +38,7 @@ void add_plan(CLI::App& program, Action& action);
 void add_simulate(CLI::App& program, Action& action);
 void add_map(CLI::App& program, Action& action);
 void add_reach(CLI::App& program, Action& action);
+void add_characterise(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
 void add_stress(CLI::App& program, Action& action);
 void add_study(CLI::App& program, Action& action);

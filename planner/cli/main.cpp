@@ -38,6 +38,7 @@ int run(int argc, char** argv) {
   add_simulate(program, action);
   add_bench(program, action);
   add_study(program, action);
+  add_characterise(program, action);
   add_stress(program, action);
   add_check(program, action);
   add_schema(program, action);

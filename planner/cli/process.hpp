@@ -1,7 +1,13 @@
-// The process: its standard streams, in whatever condition it is started with, and its signals.
+// The process: its standard streams, in whatever condition it is started with, its signals, and how it ends: the
+// one place where exceptions become messages and exit codes.
 #pragma once
 
+#include <exception>
 #include <string>
+#include <vector>
+
+#include "mapping/error.hpp"
+#include "planner/input/error.hpp"
 
 namespace drapeplan {
 
@@ -26,5 +32,31 @@ class InterruptGuard {
   /// Whether a signal has come.
   [[nodiscard]] static bool interrupted();
 };
+
+enum ExitCode : int { kDone = 0, kInputWrong = 2, kNotFinished = 3, kBug = 4 };
+
+/// Faults of input files with their places, all at once.
+class InputErrors : public WrongInput {
+ public:
+  explicit InputErrors(const std::vector<InputError>& errors);
+};
+
+/// Why something could not be done.
+struct Failure {
+  ExitCode code = kBug;
+  std::string reason;
+  bool has_places = false;  ///< the reason is a list of lines, each with its file
+};
+
+/// What an exception means: WrongInput is an error of input; NotFinished, no memory and what the operating
+/// system refuses during the work leave it unfinished; everything else is a bug.
+Failure failure_of(const std::exception_ptr& thrown);
+
+/// One line on stderr, or one per fault of a file.
+/// @param subject  what the work was about: the case file; may be empty.
+void print_failure(const Failure& failure, const std::string& subject);
+
+/// The errors one per line, and how many there are.
+std::string errors_text(const std::vector<InputError>& errors);
 
 }  // namespace drapeplan

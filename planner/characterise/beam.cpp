@@ -1,0 +1,133 @@
+#include "planner/characterise/beam.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <stdexcept>
+
+namespace drapeplan {
+namespace {
+
+constexpr int kSteps = 400;       // along the strip
+constexpr int kBisections = 60;   // down to round-off
+
+/// Slope angle, moment, x, y along the strip.
+using Along = std::array<double, 4>;
+
+Along operator+(const Along& a, const Along& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]};
+}
+Along operator*(double factor, const Along& a) {
+  return {factor * a[0], factor * a[1], factor * a[2], factor * a[3]};
+}
+
+/// The smallest x in [low, high] for which `above` holds, if it holds from some x on.
+double bisect(double low, double high, const std::function<bool(double)>& above) {
+  for (int k = 0; k < kBisections; ++k) {
+    const double middle = 0.5 * (low + high);
+    (above(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+/// The strip with this slope angle at its tip, from the tip inwards; classical fourth-order Runge-Kutta steps.
+/// @param clamp_angle  that it has at the other end, its smallest one.
+StripAtRest integrate(const BendingLaw& law, double length, double load, double tip_angle,
+                      double& clamp_angle) {
+  const double step = length / kSteps;
+  const auto rate = [&](double from_tip, const Along& a) -> Along {
+    return {-law(a[1]), load * from_tip * std::cos(a[0]), -std::cos(a[0]), std::sin(a[0])};
+  };
+  StripAtRest strip;
+  Along at{tip_angle, 0, 0, 0};
+  clamp_angle = tip_angle;
+  for (int k = 0; k <= kSteps; ++k) {
+    const double s = k * step;
+    strip.places.emplace_back(at[2], at[3]);
+    strip.curvature.push_back(law(at[1]));
+    strip.moment.push_back(at[1]);
+    clamp_angle = std::min(clamp_angle, at[0]);  // a strip that turns back is bent too much all the same
+    const Along a = rate(s, at), b = rate(s + step / 2, at + step / 2 * a),
+                c = rate(s + step / 2, at + step / 2 * b), d = rate(s + step, at + step * c);
+    at = at + step / 6 * (a + 2.0 * b + 2.0 * c + d);
+  }
+  const Eigen::Vector2d clamp = strip.places.back();
+  for (Eigen::Vector2d& place : strip.places) place -= clamp;
+  std::reverse(strip.places.begin(), strip.places.end());
+  std::reverse(strip.curvature.begin(), strip.curvature.end());
+  std::reverse(strip.moment.begin(), strip.moment.end());
+  return strip;
+}
+
+/// Integral over the strain from 0 to `end` of stress and of stress times strain, of a piecewise linear curve.
+std::array<double, 2> integrals(const Curve& curve, double end) {
+  std::array<double, 2> sums{0, 0};
+  const auto add = [&](double from, double to) {
+    if (!(to > from)) return;
+    const double a = curve(from), b = curve(to), width = to - from;
+    sums[0] += width * (a + b) / 2;
+    sums[1] += width * (a * from + b * to + 4 * curve((from + to) / 2) * (from + to) / 2) / 6;
+  };
+  for (size_t k = 0; k + 1 < curve.strain.size(); ++k)
+    add(std::min(curve.strain[k], end), std::min(curve.strain[k + 1], end));
+  add(std::min(curve.strain.back(), end), end);
+  return sums;
+}
+
+}  // namespace
+
+BendingLaw linear_bending(double stiffness) {
+  return {{0, 1}, {0, 1 / stiffness}};
+}
+
+StripAtRest strip_at_rest(const BendingLaw& law, double length, double load) {
+  double angle = 0;  // at the clamp
+  const double tip_angle = bisect(0, 0.5 * std::numbers::pi, [&](double at_tip) {
+    integrate(law, length, load, at_tip, angle);
+    return angle >= 0;
+  });
+  return integrate(law, length, load, tip_angle, angle);
+}
+
+double stiffness_of(double tip, double length, double load) {
+  if (!(tip > 0 && tip < length))
+    throw std::invalid_argument("stiffness_of: the drop must lie between 0 and the length");
+  const auto drop = [&](double logarithm) {
+    return strip_at_rest(linear_bending(std::exp(logarithm)), length, load).tip();
+  };
+  // The drop of a stiff strip is load length^4 / (8 D).
+  const double middle = std::log(load * std::pow(length, 4) / (8 * tip));
+  constexpr double kSoftest = 5, kStiffest = 1;  // orders of e beside it; softer strips hang down straight
+  if (drop(middle - kSoftest) < tip)
+    throw std::invalid_argument("stiffness_of: a strip that drops so far hangs down straight");
+  return std::exp(bisect(middle - kSoftest, middle + kStiffest,
+                         [&](double logarithm) { return drop(logarithm) <= tip; }));
+}
+
+double section_moment(const Curve& tension, const Curve& compression, double thickness, double curvature) {
+  if (!(curvature > 0)) return 0;
+  const double spread = curvature * thickness;  // of strains, from the inside to the outside
+  const auto outside = [&](double tensile) { return integrals(tension, tensile); };
+  const double tensile = bisect(0, spread, [&](double strain) {
+    return outside(strain)[0] >= integrals(compression, spread - strain)[0];
+  });
+  return (outside(tensile)[1] + integrals(compression, spread - tensile)[1]) / (curvature * curvature);
+}
+
+BendingLaw section_bending(const Curve& tension, const Curve& compression, double thickness) {
+  constexpr int kPoints = 500;
+  constexpr double kLargestStrain = 0.1;
+  BendingLaw law{{0}, {0}};
+  for (int k = 1; k <= kPoints; ++k) {
+    const double curvature = kLargestStrain / thickness * std::pow(double(k) / kPoints, 3);
+    const double moment = section_moment(tension, compression, thickness, curvature);
+    if (!(moment > law.strain.back())) continue;
+    law.strain.push_back(moment);
+    law.stress.push_back(curvature);
+  }
+  return law;
+}
+
+}  // namespace drapeplan

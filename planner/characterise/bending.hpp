@@ -1,0 +1,58 @@
+// Fibre compression from cantilevers: the inverse bending model. [Krogh], "Cantilever Test".
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "planner/case/fields.hpp"
+#include "planner/measured/smooth.hpp"
+
+namespace drapeplan {
+
+/// A strip on its way down.
+struct TipHistory {
+  double length = 0, width = 0;     ///< free length and width [m]
+  std::vector<double> time, tip;    ///< [s], drop of the tip [m]
+  std::vector<double> root_strain;  ///< outside, at 0.1 % of the length, > 0 [-]
+};
+
+/// The compression curve that is scaled: the slope of tension up to 0.1 % of strain, beyond it 0.5 GPa (the
+/// break comes from tows that buckle).
+Curve master_compression(const Curve& tension);
+
+/// Drops at rest of a strip over the scale of its compression curve, each from a simulation.
+struct BendingModel {
+  std::vector<double> scale;  ///< increasing
+  std::vector<double> tip;    ///< [m], decreasing
+  /// The scale of a drop. @throws NotFinished for a drop beyond those that were simulated.
+  [[nodiscard]] double scale_of(double tip) const;
+};
+
+/// Simulates twelve strips with scales from 0.02 to 10 side by side.
+/// @param fabric  with tension; its compression is replaced.  @param gravity  [m/s^2].
+/// @throws NotFinished if one of them does not come to rest.
+BendingModel bending_model(Fabric fabric, const Curve& master, double length, double width, double gravity,
+                           int threads);
+
+struct CompressionLaw {
+  Curve master;
+  std::vector<double> factors;  ///< of the master, slowest rate first
+  std::vector<double> rates;    ///< of the strain [1/s]; the first is that of rest, 1e-15
+  std::vector<double> times;    ///< at which the strip had the drop of each [s]
+  BendingModel model;
+  double first_tip = 0;         ///< at 0.4 s [m]
+  double static_tip = 0;        ///< [m]
+  double stiffness = 0;         ///< D of the isotropic strip with this drop [N m]
+  double frequency = 0;         ///< omega_1 of Eq. (5) [1/s]
+  double alpha = 0;             ///< of Eq. (4), critical damping [1/s]
+};
+
+/// Six curves: the first from the drop at 0.4 s, the last from the drop at rest, with a rate of 1e-15/s; four
+/// with factors at equal distances between. The rate of each is that of the strain at the root at the time at
+/// which the strip had the drop that belongs to the factor. Nothing is extrapolated.
+/// @param history  that starts at 0.4 s or before; its largest drop is taken to be that at rest.
+/// @throws NotFinished if the history does not span this.
+CompressionLaw compression_law(const TipHistory& history, const Fabric& fabric, double gravity, int threads);
+
+}  // namespace drapeplan

@@ -1,0 +1,212 @@
+#include "planner/characterise/files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "planner/base/json_text.hpp"
+#include "planner/base/text.hpp"
+#include "planner/report/charts.hpp"
+#include "planner/report/page.hpp"
+
+namespace drapeplan {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kToDegrees = 180 / std::numbers::pi;
+constexpr size_t kShown = 400;  // points of a specimen in a chart
+
+/// Points of a line, in the units of a chart; some of them if there are many.
+std::vector<Eigen::Vector2d> points(const std::vector<double>& x, double x_unit, const std::vector<double>& y,
+                                    double y_unit, double up_to = 1e300) {
+  std::vector<Eigen::Vector2d> list;
+  const size_t step = std::max<size_t>(1, x.size() / kShown);
+  for (size_t k = 0; k < x.size(); k += step) {
+    if (x[k] <= up_to) list.emplace_back(x_unit * x[k], y_unit * y[k]);
+  }
+  return list;
+}
+
+json curve_json(const Curve& curve) {
+  return {{"strain", curve.strain}, {"stress", curve.stress}};
+}
+
+json shear_json(const ShearLaw& law) {
+  json result{{"measured_to_deg", kToDegrees * law.measured_to},
+              {"valid_to_deg", kToDegrees * law.valid_to},
+              {"band", law.band},
+              {"rates", law.table.rates},
+              {"curves", json::array()},
+              {"measured_curves", json::array()}};
+  for (const Curve& curve : law.table.curves) result["curves"].push_back(curve_json(curve));
+  for (const Curve& curve : law.measured) result["measured_curves"].push_back(curve_json(curve));
+  return result;
+}
+
+ReportFigure tension_figure(const TensionLaw& law) {
+  Chart chart{.title = "Tension", .x_label = "strain [%]", .y_label = "nominal stress [MPa]", .series = {},
+              .side_legend = true};
+  for (const StrainPoints& one : law.specimens)
+    chart.series.push_back({.name = fmt::format("{} ({:.1g} 1/s)", one.file, one.rate),
+                            .points = points(one.strain, 1e2, one.stress, 1e-6),
+                            .dots = true});
+  chart.series.push_back(
+      {.name = "material", .points = points(law.curve.strain, 1e2, law.curve.stress, 1e-6), .marks = true});
+  return {"Stress along the fibres over their strain, without what the machine moved and without the toe. The "
+          "material takes the curve of the fastest rate.",
+          line_chart(chart)};
+}
+
+std::string rate_text(double rate) {
+  return fmt::format("{:.3g} 1/s", rate);
+}
+
+ReportFigure force_figure(const ShearLaw& law, const std::string& what) {
+  Chart chart{.title = what + ": force", .x_label = "shear angle [deg]", .y_label = "force [N]", .series = {},
+              .side_legend = true};
+  for (const ShearForce& one : law.specimens)
+    chart.series.push_back(
+        {.name = one.name, .points = points(one.angle, kToDegrees, one.force, 1), .dots = true});
+  for (const ShearForce& one : law.slices)
+    chart.series.push_back(
+        {.name = "at " + rate_text(one.rate), .points = points(one.angle, kToDegrees, one.force, 1)});
+  return {"Forces of all specimens over the shear angle, and of the surface through them at constant rates.",
+          line_chart(chart)};
+}
+
+ReportFigure stress_figure(const ShearLaw& law, const std::string& what, const char* measure) {
+  Chart chart{.title = what + ": stress", .x_label = "shear angle [deg]",
+              .y_label = fmt::format("shear stress, {} [kPa]", measure), .series = {}, .side_legend = true};
+  for (size_t k = 0; k < law.table.curves.size(); ++k) {
+    const std::string rate = law.table.rates.empty() ? "" : " at " + rate_text(law.table.rates[k]);
+    chart.series.push_back({.name = "as measured" + rate,
+                            .points = points(law.measured[k].strain, kToDegrees, law.measured[k].stress, 1e-3),
+                            .dots = true});
+    const Curve& curve = law.table.curves[k];
+    chart.series.push_back({.name = "material" + rate,
+                            .points = points(curve.strain, kToDegrees, curve.stress, 1e-3),
+                            .marks = true});
+  }
+  return {"Shear stress over the angle. Where a measured curve falls, which would be unstable, the material has "
+          "the nearest one that does not.",
+          line_chart(chart)};
+}
+
+ReportFigure bending_figure(const CompressionLaw& law) {
+  Chart chart{.title = "Bending model", .x_label = "factor of the compression curve", .y_label = "drop at rest [mm]",
+              .series = {}, .log_x = true};
+  chart.series.push_back(
+      {.name = "simulated strips", .points = points(law.model.scale, 1, law.model.tip, 1e3), .marks = true});
+  ChartSeries chosen{.name = "factors of the material", .points = {}, .dots = true, .rings = true};
+  chosen.points.emplace_back(law.factors.front(), 1e3 * law.static_tip);
+  chosen.points.emplace_back(law.factors.back(), 1e3 * law.first_tip);
+  chart.series.push_back(chosen);
+  return {fmt::format("Drops of simulated strips over the factor of their compression curve. The strip that was "
+                      "tested drops by {:.1f} mm after 0.4 s and by {:.1f} mm at rest; the material has six factors "
+                      "from the one to the other.",
+                      1e3 * law.first_tip, 1e3 * law.static_tip),
+          line_chart(chart)};
+}
+
+ReportFigure strip_figure(const StripHistory& strip) {
+  Chart chart{.title = fmt::format("Cantilever of {:g} mm", 1e3 * strip.tips.length), .x_label = "time [s]",
+              .y_label = "drop of the tip [mm]", .series = {}};
+  chart.series.push_back({.name = "", .points = points(strip.tips.time, 1, strip.tips.tip, 1e3), .dots = true});
+  std::string text = "Drop of the tip as measured.";
+  if (!strip.shear_modulus.empty())
+    text += fmt::format(" The slopes at the clamp mean a transverse shear modulus of {:.2g} MPa at first and {:.2g} "
+                        "MPa in the end (Eq. (14)).",
+                        1e-6 * strip.shear_modulus.front(), 1e-6 * strip.shear_modulus.back());
+  return {text, line_chart(chart)};
+}
+
+ReportFigure verification_figure(const Verification& v) {
+  Chart chart{.title = v.name, .x_label = "displacement [mm]", .y_label = "force [N]", .series = {}};
+  ChartSeries measured{.name = "measured", .points = {}, .dots = true}, simulated{.name = "simulated", .points = {}};
+  const size_t step = std::max<size_t>(1, v.measured.size() / kShown);
+  for (size_t k = 0; k < v.measured.size(); k += step)
+    measured.points.emplace_back(1e3 * v.measured[k].x(), v.measured[k].y());
+  for (const Eigen::Vector2d& point : v.simulated) simulated.points.emplace_back(1e3 * point.x(), point.y());
+  chart.series = {measured, simulated};
+  const std::string verdict =
+      v.failure.empty() ? fmt::format("Up to {:.1f} mm they differ by {:.1f} % of the force at most.",
+                                      1e3 * v.compared_to, 1e2 * v.error)
+                        : "The run did not end: " + v.failure;
+  return {fmt::format("{}: {} and the same strip simulated with the material. {}", v.name, v.file, verdict),
+          line_chart(chart)};
+}
+
+}  // namespace
+
+json characterisation_json(const Characterisation& found) {
+  json result{{"verifications", json::array()}};
+  if (const auto& law = found.tension)
+    result["tension"] = {{"curve", curve_json(law->curve)}, {"rate", law->rate}, {"band", law->band},
+                         {"valid_to", law->valid_to}};
+  if (found.bias) result["bias_extension"] = shear_json(*found.bias);
+  if (found.frame) result["picture_frame"] = shear_json(*found.frame);
+  if (const auto& law = found.compression) {
+    result["compression"] = {{"factors", law->factors},     {"rates", law->rates},
+                             {"times", law->times},         {"first_tip", law->first_tip},
+                             {"static_tip", law->static_tip}, {"stiffness", law->stiffness},
+                             {"frequency", law->frequency}, {"alpha", law->alpha},
+                             {"model", {{"scale", law->model.scale}, {"tip", law->model.tip}}}};
+  }
+  for (const Verification& v : found.verifications) {
+    json one{{"name", v.name}, {"file", v.file}, {"compared_to", v.compared_to}};
+    if (v.failure.empty())
+      one["error"] = v.error;
+    else
+      one["failure"] = v.failure;
+    result["verifications"].push_back(one);
+  }
+  result["material"] = material_json(found.material);
+  return result;
+}
+
+std::string characterisation_text(const Characterisation& found) {
+  std::string text;
+  const auto mode = [&](const char* name, const CurveFields& fields) {
+    text += fmt::format("{}: {}\n", name, fields.source.empty() ? "no source" : fields.source);
+  };
+  mode("tension", found.material.tension);
+  mode("shear", found.material.shear);
+  mode("compression", found.material.compression);
+  for (const Verification& v : found.verifications) {
+    text += v.failure.empty()
+                ? fmt::format("{}, simulated: differs by {:.1f} % of the force at most, up to {:.1f} mm\n", v.name,
+                              1e2 * v.error, 1e3 * v.compared_to)
+                : fmt::format("{}, simulated: {}\n", v.name, v.failure);
+  }
+  return text;
+}
+
+void write_characterisation(const std::filesystem::path& folder, const Tests& tests,
+                            const Characterisation& found) {
+  write_text(folder / "material.json", dump_json(material_json(found.material), 2) + "\n");
+  PlanReport page;
+  page.title = tests.name;
+  page.description = tests.source;
+  const char* measure = tests.shear_measure == 0 ? "conjugate" : "force";
+  if (found.tension) page.figures.push_back(tension_figure(*found.tension));
+  for (const auto& [law, what] : {std::pair<const std::optional<ShearLaw>&, const char*>{found.bias, "Bias extension"},
+                                  {found.frame, "Picture frame"}}) {
+    if (!law) continue;
+    page.figures.push_back(force_figure(*law, what));
+    page.figures.push_back(stress_figure(*law, what, measure));
+  }
+  for (const StripHistory& strip : found.strips) page.figures.push_back(strip_figure(strip));
+  if (found.compression) page.figures.push_back(bending_figure(*found.compression));
+  for (const Verification& v : found.verifications) page.figures.push_back(verification_figure(v));
+  page.facts = {{"tension", found.material.tension.source},
+                {"shear", found.material.shear.source},
+                {"compression", found.material.compression.source}};
+  page.files = {{"material.json", "the material, for the `material` of a case"},
+                {"result.json", "all figures"}};
+  write_text(folder / "characterisation.html", html_report(page));
+}
+
+}  // namespace drapeplan

@@ -1,0 +1,28 @@
+// A test played again with the material that came out of it.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "fem/law/fabric.hpp"
+#include "planner/measured/tests_file.hpp"
+
+namespace drapeplan {
+
+/// Crosshead force over displacement, measured and simulated.
+struct Verification {
+  std::string name;                        ///< "bias extension at 10 mm/min"
+  std::string file;                        ///< of the test
+  std::vector<Eigen::Vector2d> measured;   ///< (displacement [m], force [N])
+  std::vector<Eigen::Vector2d> simulated;  ///< likewise
+  double error = 0;       ///< largest difference of the forces over the largest measured one up to there
+  double compared_to = 0;  ///< displacement up to which they are compared [m]
+  std::string failure;    ///< why there is nothing to compare; empty if there is
+};
+
+/// Simulates a strip in its clamps, with fibres along it or at 45 degrees, and compares forces.
+/// @param to  displacement up to which they are compared [m].
+Verification verify_strip(const StripTest& test, const Fabric& fabric, bool bias, double to);
+
+}  // namespace drapeplan

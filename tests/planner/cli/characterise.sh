@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# From synthetic raw data to a material that a case can use; and data that cannot be right.
+# Usage: characterise.sh DRAPEPLAN SOURCE_DIR JSON_VALUE
+set -uo pipefail
+# shellcheck source=tests/planner/cli/kit.sh
+. "$(dirname "$0")/kit.sh"
+cd "$work" || exit 1
+
+"$(dirname "$json_value")/synthetic_tests" data "$quick" || fail "no synthetic data"
+expect 0 characterise data/tests.json --out found --json
+within stdout /bias_extension/valid_to_deg 29.99 30.01
+within stdout /verifications/0/error 0 0.1
+same_file stdout found/result.json
+[ -s found/characterisation.html ] || fail "no page"
+value found/material.json /shear/source >source
+grep -q 'Bias extension of 9 specimens' source || fail "the material does not say where its shear is from"
+value found/material.json /compression/source >source
+grep -q 'Assumed, not tested' source || fail "the material does not say what was not tested"
+# A case takes the material.
+sed 's#"material": "[^"]*"#"material": "'"$work"'/found/material.json"#' "$source/cases/bias-extension.json" >strip.json
+expect 0 simulate strip.json --quiet
+
+# broken SCRIPT FILE TEXT: the sed script spoils a file; then TEXT is on stderr.
+broken() {
+  rm -rf spoilt && cp -r data spoilt
+  sed -i -E -e "$1" "spoilt/$2"
+  refuse "$3" characterise spoilt/tests.json
+  grep -q "spoilt/" stderr || fail "the message names no file: $(head -c 300 stderr)"
+}
+broken 's/Load \(N\)/Load/' tension_2_1.csv ':2: Load: has no unit'
+broken 's/Load/Weight/' tension_2_1.csv 'no row names columns for'
+broken 's/Extension \(mm\),Load \(N\)/Load (N),Extension (mm)/' tension_2_1.csv 'the wrong unit, size or column'
+broken '3,$d' bias_10_1.csv 'has 0 rows of numbers'
+broken '100{h;d};300{G}' bias_10_1.csv 'rows are not in their order'
+broken '400s/,[0-9.]+$/,-1/' bias_100_2.csv 'did the specimen slip'
+broken 's/"height": "270 mm"/"height": "230 mm"/' tests.json 'is less than twice the width'
+broken 's/"rate": "10 mm\/min"/"rate": "20 mm\/min"/' tests.json "but the test's rate is 20 mm/min"
+broken 's/"file": "steel_1.csv"/"file": "steel_9.csv"/' tests.json 'cannot be read'
+refuse 'none.json: cannot be read' characterise none.json
+refuse 'is not tested' characterise data/tests.json --set assumed=null
+finish 18
