@@ -50,7 +50,7 @@ ReportFigure tension_figure(const TensionLaw& law) {
   Chart chart{.title = "Tension", .x_label = "strain [%]", .y_label = "nominal stress [MPa]", .series = {},
               .side_legend = true};
   for (const StrainPoints& one : law.specimens)
-    chart.series.push_back({.name = fmt::format("{} ({:.1g} 1/s)", one.file, one.rate),
+    chart.series.push_back({.name = one.file,
                             .points = points(one.strain, 1e2, one.stress, 1e-6),
                             .dots = true});
   chart.series.push_back(
@@ -81,8 +81,8 @@ ReportFigure stress_figure(const ShearLaw& law, const std::string& what, const c
   Chart chart{.title = what + ": stress", .x_label = "shear angle [deg]",
               .y_label = fmt::format("shear stress, {} [kPa]", measure), .series = {}, .side_legend = true};
   for (size_t k = 0; k < law.table.curves.size(); ++k) {
-    const std::string rate = law.table.rates.empty() ? "" : " at " + rate_text(law.table.rates[k]);
-    chart.series.push_back({.name = "as measured" + rate,
+    const std::string rate = law.table.rates.empty() ? "" : fmt::format(", {:.2g}/s", law.table.rates[k]);
+    chart.series.push_back({.name = "measured" + rate,
                             .points = points(law.measured[k].strain, kToDegrees, law.measured[k].stress, 1e-3),
                             .dots = true});
     const Curve& curve = law.table.curves[k];
