@@ -16,12 +16,6 @@ bool is_straight(const StressTable& table) {
   return curve.strain == std::vector<double>{0, 1} && curve.stress.size() == 2;
 }
 
-Curve scaled(const Curve& points, double factor) {
-  Curve curve = points;
-  for (double& stress : curve.stress) stress *= factor;
-  return curve;
-}
-
 /// A table as fields: every rate with its own points.
 CurveFields curve_fields(const StressTable& table, const std::string& source) {
   CurveFields fields{table.curves.empty() ? Curve() : table.slowest(), 1, source, {}};
@@ -33,12 +27,9 @@ CurveFields curve_fields(const StressTable& table, const std::string& source) {
 /// Rate alpha of mass damping [1/s]. [Krogh], Eqs. (4) and (5), per width: the lowest frequency of a strip.
 double alpha_of(const DampingFields& d, const std::optional<MaterialFields>& material) {
   if (d.by == 0 || !material) return d.alpha;
-  constexpr double kFirstRoot = 1.8751040687119611;  // of cos x cosh x = -1: clamped-free beam
   const double modulus = d.modulus.value_or(material->modulus);
   const double stiffness = modulus * std::pow(material->thickness, 3) / 12;
-  const double frequency =
-      kFirstRoot * kFirstRoot * std::sqrt(stiffness / (material->areal_density * std::pow(d.length, 4)));
-  return 2 * d.ratio * frequency;
+  return 2 * d.ratio * strip_frequency(stiffness, material->areal_density, d.length);
 }
 
 /// Tables that are straight lines through strain 1 are stated as the linear law, so that moduli keep their
@@ -114,6 +105,17 @@ MoldFields mold_fields(const Mold& mold) {
 }
 
 }  // namespace
+
+Curve scaled(const Curve& original, double factor) {
+  Curve curve = original;
+  for (double& stress : curve.stress) stress *= factor;
+  return curve;
+}
+
+double strip_frequency(double stiffness, double areal_density, double length) {
+  constexpr double kFirstRoot = 1.8751040687119611;  // of cos x cosh x = -1: clamped-free beam
+  return kFirstRoot * kFirstRoot * std::sqrt(stiffness / (areal_density * std::pow(length, 4)));
+}
 
 void complete_ply(CaseFields& fields) {
   Ply& ply = fields.definition.ply;

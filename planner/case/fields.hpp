@@ -81,6 +81,12 @@ StressTable stress_table(const CurveFields& fields);
 /// The fabric that a material's fields state; @param fields  without errors.
 Fabric fabric_of(const MaterialFields& fields);
 
+/// The curve with all stresses multiplied.
+Curve scaled(const Curve& curve, double factor);
+
+/// [Krogh], Eq. (5): lowest angular frequency of a clamped strip [1/s]. @param stiffness  D per width [N m].
+double strip_frequency(double stiffness, double areal_density, double length);
+
 /// Fields into a case and back. `complete` expects fields without errors.
 void complete_case(CaseFields& fields);
 CaseFields fields_of(const Case& definition);

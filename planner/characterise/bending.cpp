@@ -10,8 +10,8 @@
 #include "mapping/error.hpp"
 #include "planner/base/parallel.hpp"
 #include "planner/characterise/beam.hpp"
-#include "planner/measured/strip_shape.hpp"
 #include "planner/drape/problem.hpp"
+#include "planner/measured/strip_shape.hpp"
 
 namespace drapeplan {
 namespace {
@@ -60,12 +60,6 @@ double simulated_drop(Fabric fabric, const Curve& compression, double length, do
   }
   const Snapshot start = take_snapshot(model, model.flat_state(0), RigDrive{});
   return start.position[tip].z() - run.final.position[tip].z();
-}
-
-Curve scaled(const Curve& curve, double factor) {
-  Curve result = curve;
-  for (double& stress : result.stress) stress *= factor;
-  return result;
 }
 
 }  // namespace
@@ -140,12 +134,9 @@ CompressionLaw compression_law(const TipHistory& history, const Fabric& fabric, 
   };
   law.first_tip = drop_at(kFirstTime);
   const double slowest = law.model.scale_of(law.static_tip), fastest = law.model.scale_of(law.first_tip);
-  std::vector<double> scales, drops;
-  for (size_t k = law.model.scale.size(); k-- > 0;)
-    scales.push_back(std::log(law.model.scale[k])), drops.push_back(law.model.tip[k]);
-  std::reverse(scales.begin(), scales.end());
-  std::reverse(drops.begin(), drops.end());
-  const MonotoneCubic drop_of(scales, drops);
+  std::vector<double> logarithms;
+  for (const double scale : law.model.scale) logarithms.push_back(std::log(scale));
+  const MonotoneCubic drop_of(logarithms, law.model.tip);
   for (int k = 0; k < kCurves; ++k) {
     const double factor = slowest + (fastest - slowest) * k / (kCurves - 1);
     const double at = k == 0 ? history.time.back() : k + 1 == kCurves ? kFirstTime : time_at(drop_of(std::log(factor)));

@@ -127,9 +127,4 @@ double transverse_shear_modulus(double root_slope, double length, double load, d
   return load * length / (kShearCorrection * thickness * std::abs(root_slope));
 }
 
-double strip_frequency(double stiffness, double areal_density, double length) {
-  constexpr double kFirstRoot = 1.8751040687119611;  // of cos x cosh x = -1: clamped-free beam
-  return kFirstRoot * kFirstRoot * std::sqrt(stiffness / (areal_density * std::pow(length, 4)));
-}
-
 }  // namespace drapeplan

@@ -48,7 +48,4 @@ DoublePowerLaw fit_double_power(const std::vector<double>& time, const std::vect
 /// Transverse shear modulus from the slope at the clamp, [Krogh], Eq. (14) [Pa]. @param load  [N/m^2].
 double transverse_shear_modulus(double root_slope, double length, double load, double thickness);
 
-/// [Krogh], Eq. (5): lowest angular frequency of a strip [1/s]. @param stiffness  D per width [N m].
-double strip_frequency(double stiffness, double areal_density, double length);
-
 }  // namespace drapeplan

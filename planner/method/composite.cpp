@@ -106,8 +106,7 @@ double CompositeSearch::value_of(const Observation& one) const {
 
 void CompositeSearch::set_level(int level) {
   level_ = level;
-  correction_.resize(0);
-  for (size_t k = 0; k < seen_.size(); ++k) corrected_[k] = value_of(seen_[k]);
+  correct({});
 }
 
 void CompositeSearch::aim_at(int level) {
@@ -121,9 +120,11 @@ void CompositeSearch::aim_at(int level) {
       ++count;
     }
   }
-  set_level(level_);
-  if (count == 0) return;
-  correction_ = sum / count;
+  correct(count > 0 ? Eigen::VectorXd(sum / count) : Eigen::VectorXd());
+}
+
+void CompositeSearch::correct(Eigen::VectorXd correction) {
+  correction_ = std::move(correction);
   for (size_t k = 0; k < seen_.size(); ++k) corrected_[k] = value_of(seen_[k]);
 }
 

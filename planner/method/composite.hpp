@@ -78,6 +78,7 @@ class CompositeSearch {
   /// The model of one batch: what is expected of a place, around the best one.
   struct Expectation;
   [[nodiscard]] double value_of(const Observation& one) const;
+  void correct(Eigen::VectorXd correction);
   /// Of those at the searched level the lowest corrected value; null if there is none.
   [[nodiscard]] const Observation* best() const;
   [[nodiscard]] Expectation expectation();

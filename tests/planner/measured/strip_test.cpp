@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "mapping/error.hpp"
+#include "planner/case/fields.hpp"
 #include "planner/measured/strip_image.hpp"
 #include "planner/measured/strip_shape.hpp"
 
