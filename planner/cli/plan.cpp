@@ -152,6 +152,7 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
           {"interrupted", search.interrupted},
           {"beats_baselines", search.beats_baselines},
           {"message", search.message},
+          {"force", best_force_text(problem, result)},
           {"evaluations", search.evaluations},
           {"failed_evaluations", search.failed_evaluations},
           {"wall_seconds", result.wall_seconds},
@@ -176,9 +177,10 @@ void print_start(const DrapeProblem& problem) {
 
 std::string result_text(const DrapeProblem& problem, const PlanResult& result,
                         const std::filesystem::path& folder) {
+  const std::string force = best_force_text(problem, result);
   std::string text =
-      fmt::format("\n{}\n{}\n{} evaluations ({} failed) in {} s", comparison_table(problem, result),
-                  result.search.message, result.search.evaluations, result.search.failed_evaluations,
+      fmt::format("\n{}\n{}\n{}{}{} evaluations ({} failed) in {} s", comparison_table(problem, result),
+                  result.search.message, force, force.empty() ? "" : "\n", result.search.evaluations, result.search.failed_evaluations,
                   std::llround(result.wall_seconds));
   if (result.best.score.valid) text += fmt::format("; report: {}", (folder / "report.html").string());
   if (result.design && !result.search.interrupted) text += design_text(result);

@@ -104,4 +104,8 @@ std::string value_text(const ScorePart& part, const Score& score);
 /// "largest gap 3.15 mm; r.m.s. gap 1.21 mm; ...": all parts. Of a failed run the reason.
 std::string score_text(const Score& score);
 
+/// What the limit of the actuators' force has to do with a drape; empty if no actuator was at it.
+/// @param limit  [N];  @param lag_tolerance  of the case [m].
+std::string force_text(const Score& score, double limit, double lag_tolerance);
+
 }  // namespace drapeplan

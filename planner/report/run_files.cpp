@@ -107,6 +107,7 @@ std::vector<std::string> notes_of(const DrapeProblem& problem) {
        {&material.source, &material.tension_source, &material.compression_source, &material.shear_source}) {
     if (!source->empty()) notes.push_back(*source);
   }
+  if (const std::string& rig = problem.definition().grippers_source; !rig.empty()) notes.push_back("Grippers: " + rig);
   return notes;
 }
 
@@ -128,6 +129,11 @@ std::string design_note(const PlanResult& result) {
 }
 
 }  // namespace
+
+std::string best_force_text(const DrapeProblem& problem, const PlanResult& result) {
+  const Case& definition = problem.definition();
+  return force_text(result.best.score, definition.grippers->actuator_force_limit, definition.score.lag_tolerance);
+}
 
 std::string terms_line(const Model& model) {
   return fmt::format("[{}]", fmt::join(model.term_names(), "] ["));
@@ -222,6 +228,7 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   report.description = problem.definition().description;
   report.verdict = search.message;
   report.reach = explain_reach(problem.reach_problem(), problem.reach()) + " " + problem.ply_floor().meaning;
+  if (const std::string force = best_force_text(problem, result); !force.empty()) report.reach += " " + force;
   report.rows = rows_of(problem, result);
   report.notes = notes_of(problem);
   report.figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", drape},

@@ -32,6 +32,9 @@ inline constexpr const char* kDesignFile = "design.json";
 /// schedules of the baselines, contour picture, charts, VTU and PVD, report.html.
 void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result);
 
+/// What the limit of force has to do with the best sequence; empty if no actuator was at it.
+std::string best_force_text(const DrapeProblem& problem, const PlanResult& result);
+
 /// The comparison as text: one row per reference and drape.
 std::string comparison_table(const DrapeProblem& problem, const PlanResult& result);
 
