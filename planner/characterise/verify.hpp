@@ -21,7 +21,20 @@ struct Verification {
   std::string failure;    ///< why there is nothing to compare; empty if there is
 };
 
-/// Simulates a strip in its clamps, with fibres along it or at 45 degrees, and compares forces.
+/// A strip in its clamps, pulled.
+struct PulledStrip {
+  std::vector<Eigen::Vector2d> force;  ///< (displacement of the crosshead [m], force [N])
+  /// (displacement [m], mean shear angle [rad]) of the zone in the middle that both clamps leave free; bias only.
+  std::vector<Eigen::Vector2d> angle;
+  std::string failure;  ///< why the run did not end; empty if it did
+};
+
+/// Simulates a strip in its clamps, with fibres along it or at 45 degrees.
+/// @param test  its size and rate; the table is not looked at.
+/// @param to  displacement at the end [m].
+PulledStrip pull_strip(const StripTest& test, const Fabric& fabric, bool bias, double to);
+
+/// The same, with its forces compared with those of the test.
 /// @param to  displacement up to which they are compared [m].
 Verification verify_strip(const StripTest& test, const Fabric& fabric, bool bias, double to);
 
