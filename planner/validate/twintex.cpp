@@ -47,19 +47,22 @@ ShearLaw bias_law() {
   return bias_extension_law({bias_test()}, {.thickness = kThickness});
 }
 
-/// The law of one laboratory's frame. Its forces are normalised, F / (2 cos(pi/4 - g/2)) over the side: here
-/// those of a frame of 1 m, filled by the fabric.
+/// The law of one laboratory's frame. Its forces are normalised, F / (2 cos(pi/4 - g/2)) over the side: here those of a
+/// frame of 1 m, filled by the fabric. Between the angles that are published a monotone curve is taken, at every degree.
 ShearLaw frame_law(const Laboratory& laboratory) {
-  FrameTest test{
-      .file = laboratory.name, .side = 1, .specimen = {}, .rate = kBiasRate, .columns = {}, .table = {}};
-  std::vector<double> way{0}, force{0};
+  std::vector<double> angle{0}, normalised{0};
   for (size_t k = 0; k < kFrameAngle.size() && std::isfinite(laboratory.force[k]); ++k) {
-    const double opening = 2 * std::cos(std::numbers::pi / 4 - kFrameAngle[k] * kDegree / 2);
-    way.push_back(opening - std::numbers::sqrt2);
-    force.push_back(laboratory.force[k] / kPerMm * opening);
+    angle.push_back(kFrameAngle[k]);
+    normalised.push_back(laboratory.force[k] / kPerMm);
   }
-  test.table = table_of(way, force);
-  return picture_frame_law({test}, {.thickness = kThickness});
+  const MonotoneCubic curve(angle, normalised);
+  std::vector<double> way, force;
+  for (double degrees = 0; degrees <= angle.back(); degrees += 1) {
+    const double opening = 2 * std::cos(std::numbers::pi / 4 - degrees * kDegree / 2);
+    way.push_back(opening - std::numbers::sqrt2);
+    force.push_back(curve(degrees) * opening);
+  }
+  return picture_frame_law({{laboratory.name, 1, {}, kBiasRate, {}, table_of(way, force)}}, {.thickness = kThickness});
 }
 
 /// Shear force per length F_sh, as benchmarks print it [N/mm].
@@ -100,7 +103,7 @@ Fabric fabric_of(const ShearLaw& law) {
 }
 
 PulledStrip simulated(const ShearLaw& law, double width, double height, double to_mm) {
-  PulledStrip strip = pull_strip({"", width, height, kBiasRate, {}, {}}, fabric_of(law), true, 1e-3 * to_mm);
+  PulledStrip strip = pull_strip({"", width, height, kBiasRate, {}, {}}, fabric_of(law), true, 1e-3 * to_mm, 1);
   if (!strip.failure.empty()) throw NotFinished(strip.failure);
   return strip;
 }
