@@ -51,6 +51,37 @@ Compared compare_softening_strip() {
   return result;
 }
 
+/// Its shape in, its law out.
+Compared compare_softening_shape() {
+  constexpr double kCurvatureShare = 0.05;
+  std::vector<Eigen::Vector2d> places;
+  for (const Place& place : kPlaces) places.emplace_back(place.x, place.y);
+  const BendingLaw law = bending_law_of_profile(places, softening_strip::kLoad);
+  const Place &clamp = kPlaces.front(), &tip = kPlaces.back();
+  Compared result{{within_share("softening strip, from its shape: moment at the clamp", "N", clamp.moment,
+                                law.strain.back(), kShare, kBendstiff)}};
+  // Places at which the stiffness differs by orders of magnitude, from the clamp to the straight end.
+  for (const size_t k : {size_t(0), size_t(4), size_t(8), size_t(15), size_t(25)})
+    result.rows.push_back(
+        within_share(fmt::format("softening strip, from its shape: curvature at {:.3g} N", kPlaces[k].moment),
+                     "1/m", kPlaces[k].curvature, law(kPlaces[k].moment), kCurvatureShare, kBendstiff));
+  result.rows.push_back(within_share(
+      "softening strip, from the law of its shape: tip, down", "m", -tip.y,
+      strip_at_rest(law, softening_strip::kLength, softening_strip::kLoad).tip(), kShare, kBendstiff));
+  Chart chart{.title = "Its law from its shape",
+              .x_label = "curvature [1/m]",
+              .y_label = "moment per width [N]",
+              .series = {},
+              .log_x = true};
+  ChartSeries theirs{.name = "bendstiff", .points = {}, .dots = true}, ours{.name = "ours", .points = {}};
+  for (const Place& place : kPlaces) theirs.points.emplace_back(place.curvature, place.moment);
+  for (size_t k = 0; k < law.strain.size(); ++k) ours.points.emplace_back(law.stress[k], law.strain[k]);
+  chart.series = {theirs, ours};
+  result.figures.push_back(
+      {"The same strip the other way round: moment over curvature from the shape alone.", line_chart(chart)});
+  return result;
+}
+
 /// Fibres with two moduli: the section's law, elements, and a heavy strip of them.
 Compared compare_two_moduli(double ratio) {
   constexpr double kModulus = 10e9, kThickness = 0.3e-3, kCurvature = 5;  // [Pa], [m], [1/m]
@@ -74,6 +105,7 @@ Compared compare_two_moduli(double ratio) {
 
 void add_bending_comparisons(std::vector<Comparison>& comparisons) {
   comparisons.push_back({"bending", "softening strip", compare_softening_strip});
+  comparisons.push_back({"bending", "softening strip, its law from its shape", compare_softening_shape});
   for (const double ratio : {4.0, 10.0})
     comparisons.push_back({"bending", "two moduli", [=] { return compare_two_moduli(ratio); }});
 }

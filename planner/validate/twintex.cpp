@@ -47,8 +47,9 @@ ShearLaw bias_law() {
   return bias_extension_law({bias_test()}, {.thickness = kThickness});
 }
 
-/// The law of one laboratory's frame. Its forces are normalised, F / (2 cos(pi/4 - g/2)) over the side: here those of a
-/// frame of 1 m, filled by the fabric. Between the angles that are published a monotone curve is taken, at every degree.
+/// The law of one laboratory's frame. Its forces are normalised, F / (2 cos(pi/4 - g/2)) over the side: here
+/// those of a frame of 1 m, filled by the fabric. Between the angles that are published a monotone curve is
+/// taken, at every degree.
 ShearLaw frame_law(const Laboratory& laboratory) {
   std::vector<double> angle{0}, normalised{0};
   for (size_t k = 0; k < kFrameAngle.size() && std::isfinite(laboratory.force[k]); ++k) {
@@ -62,7 +63,8 @@ ShearLaw frame_law(const Laboratory& laboratory) {
     way.push_back(opening - std::numbers::sqrt2);
     force.push_back(curve(degrees) * opening);
   }
-  return picture_frame_law({{laboratory.name, 1, {}, kBiasRate, {}, table_of(way, force)}}, {.thickness = kThickness});
+  return picture_frame_law({{laboratory.name, 1, {}, kBiasRate, {}, table_of(way, force)}},
+                           {.thickness = kThickness});
 }
 
 /// Shear force per length F_sh, as benchmarks print it [N/mm].
@@ -103,7 +105,8 @@ Fabric fabric_of(const ShearLaw& law) {
 }
 
 PulledStrip simulated(const ShearLaw& law, double width, double height, double to_mm) {
-  PulledStrip strip = pull_strip({"", width, height, kBiasRate, {}, {}}, fabric_of(law), true, 1e-3 * to_mm, 1);
+  PulledStrip strip =
+      pull_strip({"", width, height, kBiasRate, {}, {}}, fabric_of(law), true, 1e-3 * to_mm, 1);
   if (!strip.failure.empty()) throw NotFinished(strip.failure);
   return strip;
 }
