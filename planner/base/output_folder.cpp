@@ -84,6 +84,8 @@ bool is_result_name(std::string_view name) {
                                      "bench.csv",
                                      "stress.csv",
                                      "stress.md",
+                                     "validate.md",
+                                     "validation.html",
                                      "net.csv",
                                      "design.json"};
   static constexpr std::array kEndings{".vtu", ".pvd", ".svg"};

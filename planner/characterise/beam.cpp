@@ -1,17 +1,19 @@
 #include "planner/characterise/beam.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <stdexcept>
+
+#include "planner/measured/bisect.hpp"
+#include "planner/measured/smooth.hpp"
 
 namespace drapeplan {
 namespace {
 
-constexpr int kSteps = 400;       // along the strip
-constexpr int kBisections = 60;   // down to round-off
+constexpr int kSteps = 400;  // along the strip
 
 /// Slope angle, moment, x, y along the strip.
 using Along = std::array<double, 4>;
@@ -21,15 +23,6 @@ Along operator+(const Along& a, const Along& b) {
 }
 Along operator*(double factor, const Along& a) {
   return {factor * a[0], factor * a[1], factor * a[2], factor * a[3]};
-}
-
-/// The smallest x in [low, high] for which `above` holds, if it holds from some x on.
-double bisect(double low, double high, const std::function<bool(double)>& above) {
-  for (int k = 0; k < kBisections; ++k) {
-    const double middle = 0.5 * (low + high);
-    (above(middle) ? high : low) = middle;
-  }
-  return high;
 }
 
 /// The strip with this slope angle at its tip, from the tip inwards; classical fourth-order Runge-Kutta steps.
@@ -59,6 +52,17 @@ StripAtRest integrate(const BendingLaw& law, double length, double load, double 
   std::reverse(strip.curvature.begin(), strip.curvature.end());
   std::reverse(strip.moment.begin(), strip.moment.end());
   return strip;
+}
+
+/// Share of each knot in a piecewise linear function at `at`; the end's beyond the ends. @param knots  increasing.
+Eigen::VectorXd shares_at(const std::vector<double>& knots, double at) {
+  Eigen::VectorXd shares = Eigen::VectorXd::Zero(Eigen::Index(knots.size()));
+  const auto above = std::upper_bound(knots.begin() + 1, knots.end() - 1, at);
+  const auto k = Eigen::Index(above - knots.begin());
+  const double low = *(above - 1), share = std::clamp((at - low) / (*above - low), 0.0, 1.0);
+  shares[k - 1] = 1 - share;
+  shares[k] = share;
+  return shares;
 }
 
 /// Integral over the strain from 0 to `end` of stress and of stress times strain, of a piecewise linear curve.
@@ -104,6 +108,45 @@ double stiffness_of(double tip, double length, double load) {
     throw std::invalid_argument("stiffness_of: a strip that drops so far hangs down straight");
   return std::exp(bisect(middle - kSoftest, middle + kStiffest,
                          [&](double logarithm) { return drop(logarithm) <= tip; }));
+}
+
+BendingLaw bending_law_of_profile(const std::vector<Eigen::Vector2d>& places, double load, int pieces) {
+  const size_t count = places.size();
+  if (pieces < 2 || count < 2 * size_t(pieces) + 1)
+    throw std::invalid_argument("bending_law_of_profile: needs two places for each piece of the law, two pieces");
+  // Moments at the places, of the weight of the chords beyond them.
+  std::vector<double> along{0}, moment(count, 0);
+  for (size_t k = 1; k < count; ++k) along.push_back(along.back() + (places[k] - places[k - 1]).norm());
+  for (size_t k = count - 1; k-- > 0;) {
+    const double beyond = load * (along.back() - along[k + 1]), chord = places[k + 1].x() - places[k].x();
+    moment[k] = moment[k + 1] + chord * (beyond + 0.5 * load * (along[k + 1] - along[k]));
+    if (!(moment[k] > moment[k + 1]))
+      throw std::invalid_argument("bending_law_of_profile: the strip turns back on itself");
+  }
+  const std::vector<double> rising(moment.rbegin(), moment.rend());
+  std::vector<double> from_tip, knots;
+  for (size_t k = count; k-- > 0;) from_tip.push_back(along.back() - along[k]);
+  for (int k = 0; k <= pieces; ++k) knots.push_back(value_between(from_tip, rising, along.back() * k / pieces));
+  // Curvatures at the knots: their second integral along the strip is that of the chords' angles, downwards.
+  const auto chords = Eigen::Index(count) - 1;
+  Eigen::MatrixXd sags = Eigen::MatrixXd::Zero(chords, pieces + 1);
+  Eigen::VectorXd measured(chords), angle = Eigen::VectorXd::Zero(pieces + 1), sag = angle;
+  double sum = 0;
+  for (Eigen::Index k = 0; k < chords; ++k) {
+    const Eigen::Vector2d chord = places[size_t(k) + 1] - places[size_t(k)];
+    const double step = chord.norm(), here = moment[size_t(k)], next = moment[size_t(k) + 1];
+    const Eigen::VectorXd start = shares_at(knots, here), middle = shares_at(knots, 0.5 * (here + next)),
+                          end = shares_at(knots, next);
+    sag += step * angle + step * step * (start + 2 * middle) / 6;
+    angle += step * (start + 4 * middle + end) / 6;
+    sum += step * std::atan2(-chord.y(), chord.x());
+    sags.row(k) = sag.transpose();
+    measured[k] = sum;
+  }
+  const Eigen::VectorXd solved = sags.rightCols(pieces).colPivHouseholderQr().solve(measured);
+  std::vector<double> curvature{0};
+  for (const double value : solved) curvature.push_back(std::max(value, 0.0));
+  return {knots, not_decreasing(curvature, std::vector<double>(curvature.size(), 1))};
 }
 
 double section_moment(const Curve& tension, const Curve& compression, double thickness, double curvature) {

@@ -33,6 +33,16 @@ StripAtRest strip_at_rest(const BendingLaw& law, double length, double load);
 /// @throws std::invalid_argument if no stiffness has it: the drop lies between 0 and the length.
 double stiffness_of(double tip, double length, double load);
 
+/// The law of a strip from its shape at rest under its weight, which is what a picture of it shows. The weight beyond
+/// a place gives the moment there; the law is the piecewise linear one whose curvatures, integrated twice, miss the
+/// places least (in the sense of least squares). It goes through the origin and falls nowhere.
+/// @param places  from the clamp on, where the strip starts along +x; y is up [m]. Much further apart than they are
+/// uncertain, since chords between them are taken to be the strip's length.  @param load  weight per area [N/m^2], > 0.
+/// @param pieces  of the law, between the moments at places equally far apart along the strip: the fewer, the less
+/// noise and the less detail; two at least.
+/// @throws std::invalid_argument for fewer than two places for each piece, or a strip that turns back on itself.
+BendingLaw bending_law_of_profile(const std::vector<Eigen::Vector2d>& places, double load, int pieces = 20);
+
 /// Moment per width of a ply whose fibres have these curves [N]: pure bending with the neutral axis where no
 /// force is left. Exact for piecewise linear curves.
 /// @param tension, compression  nominal stress over strain, magnitudes.  @param thickness  [m].

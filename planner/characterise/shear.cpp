@@ -254,6 +254,11 @@ double bias_rate(double angle, double length, double speed) {
   return std::numbers::sqrt2 * speed / (length * std::sin(std::numbers::pi / 4 - angle / 2));
 }
 
+double bias_force(double whole, double half, double angle, double height, double width) {
+  return ((2 * height - 3 * width) * whole + width * half) /
+         ((height / width - 1) * (std::cos(angle / 2) - std::sin(angle / 2)));
+}
+
 ShearLaw bias_extension_law(const std::vector<StripTest>& tests, const ShearOptions& options) {
   const double height = tests.front().height, width = tests.front().width;
   std::vector<Specimen> specimens;

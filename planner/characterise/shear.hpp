@@ -42,6 +42,10 @@ double bias_angle(double displacement, double length);
 /// Its rate, [Krogh], Eq. (9) [1/s]. @param speed  of the crosshead [m/s].
 double bias_rate(double angle, double length, double speed);
 
+/// Crosshead force of a bias-extension strip, [Krogh], Eq. (10): its power is that of the sheared zones [N].
+/// @param whole, half  conjugate shear force per length, stress times thickness, at `angle` and at half of it [N/m].
+double bias_force(double whole, double half, double angle, double height, double width);
+
 /// From bias extension. Tests of one rate are averaged. [Krogh], Eq. (10), gives the stress; it is solved from small
 /// angles to large ones, and where the half angle lies in the first piece, for both at once.
 /// By the law, every zone is taken at the rate that it has, and the law's curves, at the rates at which the tests

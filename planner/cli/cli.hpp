@@ -42,6 +42,7 @@ void add_characterise(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
 void add_stress(CLI::App& program, Action& action);
 void add_study(CLI::App& program, Action& action);
+void add_validate(CLI::App& program, Action& action);
 
 void add_common_options(CLI::App& verb, CommonOptions& options);
 

@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
   add_bench(program, action);
   add_study(program, action);
   add_characterise(program, action);
+  add_validate(program, action);
   add_stress(program, action);
   add_check(program, action);
   add_schema(program, action);

@@ -86,6 +86,14 @@ std::vector<double> not_decreasing(const std::vector<double>& values, const std:
   return result;
 }
 
+double value_between(const std::vector<double>& x, const std::vector<double>& y, double at) {
+  const auto reached = std::lower_bound(x.begin() + 1, x.end() - 1, at);
+  const auto k = size_t(reached - x.begin());
+  const double rise = x[k] - x[k - 1];
+  const double share = rise > 0 ? std::clamp((at - x[k - 1]) / rise, 0.0, 1.0) : 0;
+  return y[k - 1] + share * (y[k] - y[k - 1]);
+}
+
 std::vector<double> fit_at_knots(const std::vector<double>& x, const std::vector<double>& y,
                                  const std::vector<double>& knots, double first) {
   check_increasing(knots, "fit_at_knots");

@@ -27,6 +27,10 @@ class MonotoneCubic {
 /// the wrong order are pooled.
 std::vector<double> not_decreasing(const std::vector<double>& values, const std::vector<double>& weights);
 
+/// Value of y at a value of x, straight between points; that of the end beyond the ends, and the first one that
+/// is met where x stands still. @param x  not decreasing, as many as y, two at least.
+double value_between(const std::vector<double>& x, const std::vector<double>& y, double at);
+
 /// Values at knots of the piecewise linear curve that fits points best (least squares). Knots that no point
 /// lies near are kept from running away by a small price on second differences.
 /// @param knots  increasing.  @param first  the value at the first knot, which is not fitted.

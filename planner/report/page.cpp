@@ -32,6 +32,7 @@ th:first-child, td:first-child, .pairs td { text-align: left; }
 .best { font-weight: 700; background: #eaf4ee; }
 .reference td { color: #5b6775; font-style: italic; }
 .beside td { color: #5b6775; }
+.texts td, .texts th { text-align: left; white-space: normal; max-width: 24rem; }
 .failed { color: #b3261e; text-align: left; white-space: normal; }
 figure { margin: 1.2rem 0 1.8rem; }
 figure svg { max-width: 100%; height: auto; }
@@ -99,6 +100,23 @@ std::string score_table(const std::vector<ReportRow>& rows) {
          "</caption>\n</table></div>\n";
 }
 
+std::string text_table(const ReportTable& table) {
+  std::string text = fmt::format("<h2>{}</h2>\n<div class=\"wide\"><table class=\"texts\">\n<thead><tr>",
+                                 escape_markup(table.title));
+  for (const std::string& head : table.head) text += fmt::format("<th>{}</th>", escape_markup(head));
+  text += "</tr></thead>\n<tbody>\n";
+  for (const ReportTable::Row& row : table.rows) {
+    const char* style = row.failed ? " class=\"failed\"" : row.beside ? " class=\"beside\"" : "";
+    text += fmt::format("<tr{}>", style);
+    for (const std::string& cell : row.cells) text += fmt::format("<td>{}</td>", escape_markup(cell));
+    text += "</tr>\n";
+    if (!row.note.empty())
+      text += fmt::format("<tr{}><td colspan=\"{}\">{}</td></tr>\n", style, table.head.size(),
+                          escape_markup(row.note));
+  }
+  return text + fmt::format("</tbody>\n<caption>{}</caption>\n</table></div>\n", escape_markup(table.caption));
+}
+
 std::string paragraph(const std::string& text, const std::string& style = "") {
   if (text.empty()) return "";
   const std::string opening = style.empty() ? "<p>" : fmt::format("<p class=\"{}\">", style);
@@ -152,6 +170,7 @@ std::string html_report(const PlanReport& report) {
   page += paragraph(report.description, "soft") + paragraph(report.verdict, "lead");
   if (!report.reach.empty()) page += "<h2>What the rig can reach</h2>\n" + paragraph(report.reach);
   page += score_table(report.rows);
+  for (const ReportTable& table : report.tables) page += text_table(table);
   if (!report.figures.empty()) page += "<h2>Pictures</h2>\n";
   for (const ReportFigure& figure : report.figures) {
     page += fmt::format("<figure>\n<div class=\"wide\">{}</div>\n<figcaption>{}</figcaption>\n</figure>\n",

@@ -23,6 +23,19 @@ struct ReportFigure {
   std::string svg;
 };
 
+/// A table of texts; the first column stands to the left.
+struct ReportTable {
+  std::string title, caption;
+  std::vector<std::string> head;
+  struct Row {
+    std::vector<std::string> cells;  ///< as many as in the head
+    bool failed = false;             ///< stands out
+    bool beside = false;             ///< grey
+    std::string note = {};           ///< on a line of its own below
+  };
+  std::vector<Row> rows;
+};
+
 /// All texts are plain text; they are escaped when written. What is empty is left out.
 struct PlanReport {
   std::string title;            ///< name of the case
@@ -30,6 +43,7 @@ struct PlanReport {
   std::string verdict;          ///< what came out, one sentence
   std::string reach;            ///< what the rig can reach at all, one or two sentences
   std::vector<ReportRow> rows;  ///< baselines first, the optimum last
+  std::vector<ReportTable> tables;
   std::vector<ReportFigure> figures;
   std::vector<std::string> notes;                          ///< assumptions and limits the reader must know
   std::vector<std::pair<std::string, std::string>> facts;  ///< name, value: evaluations, wall time, hash, ...

@@ -226,36 +226,6 @@ TEST(Net, ShearOnTheArticlesMoldForTheThreeGenerators) {
   }
 }
 
-// C. Krogh's KinDrape (MIT) on the article's mold over half a metre, 22 mm cells, from the middle: largest and
-// mean shear of its cells, and nodes at the corners and at a mid-side. There the first edge along the weft lies
-// above the y axis; here an angle says where the warp goes, so that angle is sought.
-TEST(Net, LeastShearGoesWhereKinDrapeGoes) {
-  const Mold article = article_mold();
-  const Mold mold(article.shape(), {{0, 0}, {0.5, 0.5}});
-  double angle = 0;
-  Net net;
-  for (int k = 0; k < 6; ++k) {
-    net = map_ply(mold, {0.44, 0.44, {0.25, 0.25}, angle},
-                  {Generators::minimum_shear, {0.25, 0.25}, {0, 0}, 0.022});
-    const Eigen::Vector3d edge = net.node(10, 11) - net.node(10, 10);
-    angle += std::atan2(edge.x(), edge.y());
-  }
-  ASSERT_EQ(net.u.size(), 21U);
-  ASSERT_EQ(net.v.size(), 21U);
-  const struct {
-    int i, j;
-    Eigen::Vector3d place;
-  } expected[] = {{0, 0, {0.02414, 0.06657, 0.07257}},
-                  {20, 0, {0.44565, 0.04252, 0.02383}},
-                  {0, 20, {0.07364, 0.49387, 0.06274}},
-                  {20, 20, {0.44242, 0.47035, 0.02864}},
-                  {20, 10, {0.46404, 0.25405, 0.05768}}};
-  for (const auto& e : expected) EXPECT_LE((net.node(e.i, e.j) - e.place).norm(), 0.0005) << e.i << ", " << e.j;
-  const std::vector<double> shear = shear_field(net);
-  EXPECT_NEAR(largest(shear) * 180 / kPi, 20.166, 0.3);
-  EXPECT_NEAR(mean(shear) * 180 / kPi, 1.784, 0.3);
-}
-
 // Lines of least shear are straight in the middle of the cells beside them, half a cell off: of first order.
 TEST(Net, PlacesConvergeWithSecondOrderOnTheArticlesMold) {
   for (const Generators generators : kAllGenerators) {

@@ -15,13 +15,13 @@ using test::put;
 constexpr double kLength = 1, kWidth = 0.02;
 
 /// A bar of n elements along x, fixed at its nodes 0 and n + 1, undamped.
-Scene bar(const test::Sheet& sheet, int n, double width = kWidth) {
-  Scene scene = test::cantilever(sheet, kLength, width, n);
+Scene bar(const Sheet& sheet, int n, double width = kWidth) {
+  Scene scene = cantilever(sheet, kLength, width, n);
   scene.damping.reset();
   return scene;
 }
 
-constexpr test::Sheet kBar{1e9, 1e-3, 0.5};
+constexpr Sheet kBar{1e9, 1e-3, 0.5};
 const double kSpeed = std::sqrt(kBar.modulus * kBar.thickness / kBar.density);  // of axial waves [m/s]
 
 // Clamped-free bar, u = sin(pi x / 2 L): frequency c / (4 L). Ten periods, counted at zero crossings of the
@@ -36,7 +36,7 @@ TEST(Bar, SwingsAxiallyWithTheSpeedOfWaves) {
   const auto tip = size_t(kElements);
   double first = 0, last = 0, before = state.position.x[tip] - kLength;
   for (int crossings = 0; crossings <= kCrossings && state.step < 1000000;) {
-    test::advance(model, state, work);
+    advance(model, state, work);
     const double now = state.position.x[tip] - kLength;
     if ((now > 0) != (before > 0)) {
       last = state.time - model.dt() * now / (now - before);
@@ -58,7 +58,7 @@ TEST(Bar, CarriesAFrontWithTheStressOfItsEndVelocity) {
   State state = model.flat_state(0);
   for (const size_t n : {size_t(0), size_t(kElements + 1)}) state.velocity.x[n] = -velocity;
   Workspace work(model);
-  while (state.time < 0.7 * kLength / kSpeed) test::advance(model, state, work);
+  while (state.time < 0.7 * kLength / kSpeed) advance(model, state, work);
   int front = kElements;
   while (front > 0 && !(state.velocity.x[size_t(front)] < -0.5 * velocity)) --front;
   EXPECT_LE(test::figure("front of a wave [m]", front * kLength / kElements, kSpeed * state.time), 0.01);
@@ -118,7 +118,7 @@ void play(const Swing& swing, const Model& model, State& state, int last) {
   Workspace work(model);
   while (state.step < last) {
     if (swing.swelling) state.dt = model.dt() * swing.size(int(state.step));
-    test::advance(model, state, work);
+    advance(model, state, work);
   }
 }
 
@@ -191,8 +191,8 @@ TEST(Motion, HasTheSameBitsAndOrderAcrossARestart) {
 TEST(Chain, HangsInACatenary) {
   constexpr int kElements = 40;
   const double span = 1, length = 1.2;
-  test::Sheet sheet{1e9, 1e-3, 1};
-  Scene scene = test::cantilever(sheet, length, kWidth, kElements);
+  Sheet sheet{1e9, 1e-3, 1};
+  Scene scene = cantilever(sheet, length, kWidth, kElements);
   scene.options.section_points = 1;
   scene.clamped.clear();
   scene.pinned = {0, kElements, kElements + 1, 2 * kElements + 1};
@@ -210,7 +210,7 @@ TEST(Chain, HangsInACatenary) {
   }
   put(state.director, kElements / 2, {0, 0, 1});
   put(state.director, kElements / 2 + kElements + 1, {0, 0, 1});
-  test::settle(model, state, 1e-5 * span);
+  settle(model, state, 1e-5 * span);
   EXPECT_LE(test::figure("catenary, sag / span", -state.position.z[kElements / 2] / span, 0.2924), 0.01);
 }
 

@@ -20,7 +20,7 @@ Mesh patch() {
 }
 
 Scene patch_scene(double thickness) {
-  const test::Sheet sheet{1e6, thickness, 1};
+  const Sheet sheet{1e6, thickness, 1};
   Scene scene;
   scene.mesh = patch();
   scene.fabric = sheet.fabric();
@@ -41,7 +41,7 @@ TEST(Patch, StretchesEvenlyOnDistortedElements) {
     return Eigen::Vector3d(X.x() + 1e-3 * (X.x() + 0.5 * X.y()), X.y() + 1e-3 * (X.y() + 0.5 * X.x()), 0);
   };
   for (const int n : scene.clamped) put(state.position, size_t(n), field(scene.mesh.rest[size_t(n)]));
-  test::settle(model, state, 1e-13);
+  settle(model, state, 1e-13);
   for (size_t n = 4; n < 8; ++n)
     EXPECT_LE((get(state.position, n) - field(scene.mesh.rest[n])).norm(), 1e-12 * kWidth);
   Snapshot strains;
@@ -75,7 +75,7 @@ double bending_patch_error(double thickness, double a, double b, double c) {
     put(state.director, size_t(n),
         Eigen::Vector3d(-k * (a * X.x() + b / 2 * X.y()), -k * (c * X.y() + b / 2 * X.x()), 1).normalized());
   }
-  test::settle(model, state, 1e-8 * k);
+  settle(model, state, 1e-8 * k);
   double error = 0, largest = 0;
   for (size_t n = 4; n < 8; ++n) {
     const double exact = deflection(scene.mesh.rest[n]);

@@ -7,7 +7,7 @@ namespace drapeplan {
 namespace {
 
 constexpr double kLength = 0.24, kWidth = 0.024;  // [m]
-constexpr test::Sheet kBeam{1e9, 3e-3, 3};
+constexpr Sheet kBeam{1e9, 3e-3, 3};
 constexpr Tack kTack{1.3e3, 5e-5};
 constexpr double kLift = 4e-4;  // [m]: so far below the thickness that no tension matters
 constexpr double kTime = 0.4;   // of the lift [s]: slow against all bending modes

@@ -7,7 +7,7 @@ namespace drapeplan {
 namespace {
 
 constexpr double kLength = 0.2, kWidth = 0.02;   // [m]
-constexpr test::Sheet kStrip{1e9, 3e-4, 0.314};  // so thin that bending does not count
+constexpr Sheet kStrip{1e9, 3e-4, 0.314};  // so thin that bending does not count
 constexpr double kStretch = 1e9 * 3e-4;          // force per width and strain [N/m]
 constexpr double kTroughRadius = 0.5;            // at its bottom [m]
 

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+
+#include "planner/method/normal.hpp"
 
 namespace drapeplan {
 namespace {
@@ -25,6 +28,28 @@ TEST(StripAtRest, FollowsALawThatSoftens) {
   for (size_t k = 0; k < strip.moment.size(); ++k)
     EXPECT_NEAR(soft(strip.moment[k]), strip.curvature[k], 1e-9);
   EXPECT_GT(strip.tip(), 0.9);
+}
+
+TEST(BendingLawOfProfile, FindsALawThroughNoise) {
+  const BendingLaw truth{{0, 0.1, 0.6}, {0, 0.4, 12}};
+  const StripAtRest strip = strip_at_rest(truth, 1, 1);
+  std::mt19937_64 bits(1);
+  std::vector<Eigen::Vector2d> places;
+  for (size_t k = 0; k < strip.places.size(); k += 10)
+    places.push_back(strip.places[k] + 5e-4 * Eigen::Vector2d(0, k > 0 ? standard_normal(bits) : 0));
+  const BendingLaw law = bending_law_of_profile(places, 1, 10);
+  for (size_t k = 1; k < law.stress.size(); ++k) EXPECT_GE(law.stress[k], law.stress[k - 1]);
+  for (double moment = 0.05; moment <= strip.moment.front(); moment += 0.05)
+    EXPECT_NEAR(law(moment), truth(moment), 0.1 * truth(strip.moment.front())) << moment;
+  EXPECT_NEAR(strip_at_rest(law, 1, 1).tip(), strip.tip(), 0.002 * strip.tip());
+}
+
+TEST(BendingLawOfProfile, RefusesTooFewPlacesAndAStripThatTurnsBack) {
+  const std::vector<Eigen::Vector2d> places = strip_at_rest(linear_bending(1), 1, 1).places;
+  EXPECT_THROW(bending_law_of_profile(places, 1, int(places.size()) / 2 + 1), std::invalid_argument);
+  std::vector<Eigen::Vector2d> back = places;
+  for (size_t k = 30; k < back.size(); ++k) back[k].x() = 2 * back[30].x() - back[k].x();
+  EXPECT_THROW(bending_law_of_profile(back, 1), std::invalid_argument);
 }
 
 TEST(SectionMoment, HasTheClosedFormOfTwoModuli) {

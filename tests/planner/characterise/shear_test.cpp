@@ -57,19 +57,6 @@ TEST(BiasExtension, FindsALinearLawFromItsFirstPieceOn) {
               6e-3 * force.table.slowest()(30 * kDegree));
 }
 
-// J. Cao and others (2008), Fig. 40: Twintex, 115 x 230 mm, 10 mm/min; their Eq. 18 gives these forces per length.
-TEST(BiasExtension, HasTheShearForcesOfTheBenchmarkFabric) {
-  StripTest test{"HKUST", 0.115, 0.230, 0.01 / 60, {}, {}};
-  test.table = table_of({0, 2.5e-3, 5e-3, 10e-3, 15e-3, 20e-3, 25e-3, 30e-3, 35e-3, 40e-3},
-                        {0, .62, 1.02, 1.86, 2.88, 4.35, 6.88, 10.98, 18.72, 32.42});
-  const double thickness = 1.2e-3;
-  const ShearLaw law = bias_extension_law({test}, {.thickness = thickness, .measure = ShearMeasure::force});
-  const std::pair<double, double> expected[] = {{10, .0092}, {20, .0179}, {30, .0371}, {40, .0735}};
-  for (const auto& [degrees, newtons_per_mm] : expected)
-    EXPECT_NEAR(1e-3 * thickness * law.table.slowest()(degrees * kDegree), newtons_per_mm, 0.15 * newtons_per_mm)
-        << degrees;
-}
-
 TEST(BiasExtension, KeepsACurveThatFallsBesideTheOneThatDoesNot) {
   StripTest test = linear_bias_test(1e5, 3e-4);
   std::vector<double>& force = test.table.columns[TestQuantity::force];

@@ -58,6 +58,8 @@ for verb in map reach simulate plan bench study check; do
 done
 denied 2 'no scene' stress --only 'no such scene' --out refused
 denied 2 '--set and --seed' stress --set fem.rates=false --out refused
+denied 2 'no comparison' validate --only 'no such comparison' --out refused
+denied 2 '--set and --seed' validate --seed 1 --out refused
 denied 2 'did you mean "grippers.joint_offset"' explain grippers.joint_ofset --out refused
 
 # Scenes that cannot be built, plies that cannot be mapped.
@@ -81,11 +83,12 @@ if [ "$(id -u)" != 0 ]; then
   mkdir closed && chmod 500 closed
   places+=(closed/x) reasons+=("Permission denied")
 fi
-for verb in map reach simulate plan bench study check stress schema explain; do
+for verb in map reach simulate plan bench study check stress validate schema explain; do
   # shellcheck disable=SC2207
   words=($(command_of $verb))
   case $verb in
     stress) words+=(--only 'size: two elements') ;;
+    validate) words+=(--only 'bending: softening strip') ;;
     schema) ;;
     explain) words+=(grippers) ;;
     check | map | reach) words+=("$quick") ;;

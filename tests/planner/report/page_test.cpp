@@ -27,6 +27,7 @@ TEST(HtmlReport, EscapesEveryTextButThePictures) {
   PlanReport report;
   report.title = report.description = report.verdict = report.reach = evil;
   report.rows = {{evil, failed_score(evil)}};
+  report.tables = {{evil, evil, {evil}, {{{evil}, true, false, evil}}}};
   report.figures = {{evil, "<svg><title>kept</title></svg>"}};
   report.notes = {evil};
   report.facts = report.settings = report.files = {{evil, evil}};
