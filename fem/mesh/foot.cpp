@@ -34,7 +34,8 @@ std::optional<std::array<double, 4>> weights_in(const std::array<Vector2d, 4>& x
   return w;
 }
 
-std::optional<Foot> foot_in(const Mesh& mesh, size_t element, const std::vector<Vector2d>& place, const Vector2d& at) {
+std::optional<Foot> foot_in(const Mesh& mesh, size_t element, const std::vector<Vector2d>& place,
+                            const Vector2d& at) {
   std::array<Vector2d, 4> corner;
   for (size_t c = 0; c < 4; ++c) corner[c] = place[size_t(mesh.quads[element][c])];
   const auto weight = weights_in(corner, at);
@@ -60,7 +61,9 @@ std::optional<Foot> foot_of(const Mesh& mesh, const Vector2d& at) {
 
 Foot nearest_foot(const Mesh& mesh, const Vector2d& at) {
   if (const auto foot = foot_of(mesh, at)) return *foot;
-  const auto nearer = [&at](const Vector2d& a, const Vector2d& b) { return (a - at).norm() < (b - at).norm(); };
+  const auto nearer = [&at](const Vector2d& a, const Vector2d& b) {
+    return (a - at).norm() < (b - at).norm();
+  };
   const auto node = int(std::min_element(mesh.rest.begin(), mesh.rest.end(), nearer) - mesh.rest.begin());
   Foot foot;
   for (size_t e = 0; e < mesh.quads.size(); ++e) {

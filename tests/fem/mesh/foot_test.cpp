@@ -11,7 +11,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Every node turned, moved and lifted by a linear field: what is bilinear between nodes must follow it exactly.
+/// Every node turned, moved and lifted by a linear field: what is bilinear between nodes must follow it
+/// exactly.
 std::vector<Vector3d> moved(const Mesh& mesh) {
   std::vector<Vector3d> position;
   for (const Vector2d& rest : mesh.rest)
