@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -22,14 +23,6 @@ constexpr int kLooks = 200;           // per run: 0.5 % of it is lost at most by
 constexpr int kTenths = 10;           // at whose ends energies are compared, from the second on
 constexpr int kRestInterval = 32;     // steps between two looks at the ply's speed
 constexpr double kTimeSlack = 1e-12;  // of the duration: round-off of summed steps
-
-/// Height of the flat ply at the start: all joints stand at the same height.
-double start_height(const Model& model, const RunRequest& request) {
-  if (!model.rig()) return model.scene().start_height;
-  if (!request.schedule) throw WrongInput("simulate: a rig needs a schedule");
-  model.rig()->check(*request.schedule);
-  return request.schedule->paths.front().front().z - model.scene().rig->joint_offset;
-}
 
 /// The mold is asked vertically, with its slope: a ply that starts inside it would be thrown out.
 void refuse_start_in_mold(const Model& model, const State& state) {
@@ -128,7 +121,7 @@ bool at_rest(const Model& model, const Clock& clock, State& state) {
 
 State first_state(const Model& model, const RunRequest& request) {
   if (request.from) return *request.from;
-  State state = model.flat_state(start_height(model, request));
+  State state = model.flat_state(start_height(model, request.schedule));
   if (model.scene().mold) refuse_start_in_mold(model, state);
   return state;
 }
@@ -140,6 +133,31 @@ std::optional<Snapshot> unpressed_snapshot(const Model& model, const State& stat
   before.director = state.unpressed_director;
   return take_snapshot(model, before, RigDrive{});
 }
+
+/// Hands out snapshots at instants that cut the run into equal parts, its start and its end included.
+class Observer {
+ public:
+  /// @param see  may be null: nothing is looked at.
+  Observer(int instants, const std::function<void(const Snapshot&)>& see, const Clock& clock, const State& first)
+      : count_(see ? instants : 0), spans_(std::max(count_ - 1, 1)), see_(see), clock_(clock) {
+    next_ = first.step == 0 ? 0 : clock.passed(first.time, spans_) + 1;
+  }
+  void look(const Model& model, const State& state, const RigDrive& drive) {
+    if (next_ >= count_ || clock_.passed(state.time, spans_) < next_) return;
+    see_(take_snapshot(model, state, drive));
+    ++next_;
+  }
+  /// At the end of the run.
+  void close(const Snapshot& last) const {
+    if (next_ < count_) see_(last);
+  }
+
+ private:
+  int count_, spans_;
+  std::int64_t next_;
+  const std::function<void(const Snapshot&)>& see_;
+  const Clock& clock_;
+};
 
 /// Why a run ended, where nothing that was seen said it.
 /// @param links_kept  interlinks had their length at every step.
@@ -164,6 +182,13 @@ void say_why(const Clock& clock, bool rests, bool links_kept, const State& state
 
 }  // namespace
 
+double start_height(const Model& model, const Schedule* schedule) {
+  if (!model.rig()) return model.scene().start_height;
+  if (schedule == nullptr) throw WrongInput("simulate: a rig needs a schedule");
+  model.rig()->check(*schedule);
+  return schedule->paths.front().front().z - model.scene().rig->joint_offset;
+}
+
 RunResult simulate(const Model& model, const RunRequest& request) {
   const auto wall = std::chrono::steady_clock::now();
   const Clock clock(model, request);
@@ -173,19 +198,16 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   summary.parts = model.summary_parts();
   State& state = result.state;
   state = first_state(model, request);
-  const std::int64_t first_step = state.step, frames = request.observe ? request.frames : 0;
+  const std::int64_t first_step = state.step;
   const std::int64_t last_step =
       request.steps > 0 ? first_step + request.steps : std::numeric_limits<std::int64_t>::max();
-  const std::int64_t spans = std::max<std::int64_t>(frames - 1, 1);
-  std::int64_t frame = state.step == 0 ? 0 : clock.passed(state.time, spans) + 1;
+  std::array observers{Observer(request.frames, request.observe, clock, state),
+                       Observer(request.samples, request.sample, clock, state)};
   Workspace work(model);
   Monitor monitor(model, drive);
   bool running = true, rests = false;
   while (running && !rests && !clock.ended(state) && state.time < clock.pause && state.step < last_step) {
-    if (frame < frames && clock.passed(state.time, spans) >= frame) {
-      request.observe(take_snapshot(model, state, drive));
-      ++frame;
-    }
+    for (Observer& observer : observers) observer.look(model, state, drive);
     if (model.rig()) model.rig()->let_go(state, drive);
     if (clock.press) press_ply(model, clock, state);
     choose_step(model, clock, state, work);
@@ -207,7 +229,9 @@ RunResult simulate(const Model& model, const RunRequest& request) {
   result.final = take_snapshot(model, state, drive);
   result.unpressed = unpressed_snapshot(model, state);
   if (running) monitor.close(state, summary);
-  if (running && clock.ended(state) && frame < frames) request.observe(result.final);
+  if (running && clock.ended(state)) {
+    for (const Observer& observer : observers) observer.close(result.final);
+  }
   say_why(clock, rests, work.rig.converged, state, summary);
   summary.steps = state.step;
   summary.dt = state.time / double(std::max<std::int64_t>(state.step, 1));

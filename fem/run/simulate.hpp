@@ -23,6 +23,8 @@ struct RunRequest {
   std::int64_t steps = 0;  ///< stops after so many of its own, to be continued; 0: no limit
   int frames = 0;          ///< snapshots handed to `observe`, equally spaced in time, the start included
   std::function<void(const Snapshot&)> observe = nullptr;
+  int samples = 0;  ///< the same for `sample`, at instants of its own: a history needs more of them
+  std::function<void(const Snapshot&)> sample = nullptr;
 };
 
 struct RunResult {
@@ -33,6 +35,11 @@ struct RunResult {
   /// extremes until then. Absent if the run ended before.
   std::optional<Snapshot> unpressed;
 };
+
+/// Height at which the flat ply of a run starts [m]: the scene's, or the one at which a rig's joints stand.
+/// @param schedule  that the rig plays; null without a rig.
+/// @throws WrongInput if there is a rig and no schedule, or one that does not fit the rig.
+double start_height(const Model& model, const Schedule* schedule);
 
 /// Runs the model. A run that diverges is a result, never an exception.
 /// A run that pauses and goes on from its state has the same bits as one that never did.

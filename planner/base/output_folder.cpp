@@ -87,11 +87,14 @@ bool is_result_name(std::string_view name) {
                                      "validate.md",
                                      "validation.html",
                                      "net.csv",
+                                     "probes.csv",
+                                     "grips.csv",
                                      "design.json"};
   static constexpr std::array kEndings{".vtu", ".pvd", ".svg"};
   constexpr std::string_view kPartial = ".partial";
   if (name.ends_with(kPartial)) name.remove_suffix(kPartial.size());
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end() ||
+         (name.starts_with("profile_") && name.ends_with(".csv")) ||
          std::any_of(kEndings.begin(), kEndings.end(), [&](const char* end) { return name.ends_with(end); });
 }
 

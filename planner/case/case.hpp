@@ -92,6 +92,23 @@ struct Probe {
   Eigen::Vector2d place{0, 0};  ///< (u, v) [m]
 };
 
+/// A line along which the ply is shown beside the mold.
+struct Profile {
+  enum class Frame {
+    world,  ///< ends (x, y) of the world: where a vertical plane through them cuts the ply
+    ply,    ///< ends (u, v) of the ply: a line that was drawn on it while it was flat
+  };
+  std::string name;
+  Frame frame = Frame::world;
+  Eigen::Vector2d from{0, 0}, to{0, 0};  ///< [m]
+};
+
+/// A time of a run at which the ply is shown, beside its end.
+struct Instant {
+  std::string name;
+  double time = 0;  ///< schedule's clock [s]
+};
+
 /// What presses the ply down once it has been laid.
 struct PressOptions {
   enum class Pads {
@@ -141,6 +158,8 @@ struct Case {
   std::vector<Edge> clamped;
   std::vector<GripOptions> grips;
   std::vector<Probe> probes;
+  std::vector<Profile> profiles;
+  std::vector<Instant> instants;
   std::vector<Reference> references;
   double duration = 0;  ///< of a run without grippers [s]
   ScheduleOptions schedule;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -213,6 +214,27 @@ void check_probes(const CaseFields& fields, FieldReader& reader) {
   }
 }
 
+/// Their names become parts of the names of files.
+void check_profiles(const CaseFields& fields, FieldReader& reader) {
+  const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_'; };
+  std::set<std::string> names;
+  for (size_t k = 0; k < fields.definition.profiles.size(); ++k) {
+    const Profile& profile = fields.definition.profiles[k];
+    const std::string pointer = fmt::format("/profiles/{}", k);
+    if (reader.good(pointer + "/name")) {
+      if (profile.name.empty() || !std::all_of(profile.name.begin(), profile.name.end(), plain))
+        reader.fail(pointer + "/name", "is part of a file's name; allowed: letters, digits, - and _");
+      else if (!names.insert(profile.name).second)
+        reader.fail(pointer + "/name", "another profile has the same name");
+    }
+    if (!reader.good(pointer + "/from") || !reader.good(pointer + "/to")) continue;
+    if ((profile.to - profile.from).norm() <= kSlack) reader.fail(pointer, "its ends coincide");
+    if (profile.frame != Profile::Frame::ply || !reader.good("/ply")) continue;
+    check_on_ply(reader, pointer + "/from", fields.definition.ply, profile.from);
+    check_on_ply(reader, pointer + "/to", fields.definition.ply, profile.to);
+  }
+}
+
 /// Faster rates are resisted more: what is weaker the faster it goes would feed every vibration.
 void check_rates(FieldReader& reader, const std::string& mode, const CurveFields& fields) {
   const std::string pointer = fmt::format("/material/{}/rates", mode);
@@ -292,6 +314,7 @@ void check_case(const CaseFields& fields, FieldReader& reader) {
   check_grips(fields, reader);
   check_press(fields, reader);
   check_probes(fields, reader);
+  check_profiles(fields, reader);
   check_design(fields.definition.optimise.design, reader);
   if (reader.good("/optimise") && c.optimise.longest_sequence < c.optimise.shortest_stroke) {
     reader.fail("/optimise", "longest_sequence is shorter than shortest_stroke");

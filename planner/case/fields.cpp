@@ -235,12 +235,31 @@ void visit_supports(FieldVisitor& v, Case& c) {
 /// What is shown beside the results.
 void visit_views(FieldVisitor& v, Case& c) {
   ObjectList probes =
-      object_list("probes", "Points of the ply whose displacement is reported", c.probes, [&v](Probe& probe) {
+      object_list("probes", "Points of the ply whose way is reported", c.probes, [&v](Probe& probe) {
         v.field({"name", &probe.name, "Name in the results", Dimension::none, {}, true});
         v.field({"place", &probe.place, "In the ply (u, v)", Dimension::length, {}, true});
       });
   probes.needs = {"material"};
   v.list(probes);
+  ObjectList profiles = object_list(
+      "profiles", "Lines along which the ply is shown beside the mold", c.profiles, [&v](Profile& profile) {
+        v.field({"name", &profile.name, "Name of its file: letters, digits, - and _", Dimension::none, {}, true});
+        v.field({"frame", choice(profile.frame, {"world", "ply"}),
+                 "Ends in the world (x, y), where a vertical plane cuts the ply; or in the ply (u, v)"});
+        v.field({"from", &profile.from, "One end", Dimension::length, {}, true});
+        v.field({"to", &profile.to, "The other end", Dimension::length, {}, true});
+      });
+  profiles.needs = {"material"};
+  v.list(profiles);
+  ObjectList instants = object_list(
+      "instants", "Times at which profiles and shear are shown, beside the end of the run", c.instants,
+      [&v](Instant& instant) {
+        v.field({"name", &instant.name, "What it is called in tables and pictures", Dimension::none, {}, true});
+        v.field({"time", &instant.time, "On the schedule's clock; later than the end: not shown", Dimension::time,
+                 from(0), true});
+      });
+  instants.needs = {"material"};
+  v.list(instants);
   ObjectList references = object_list(
       "references", "Published results that are shown beside the own ones", c.references, [&v](Reference& r) {
         v.field({"name", &r.name, "Name in tables", Dimension::none, {}, true});

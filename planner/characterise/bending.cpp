@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fem/mesh/foot.hpp"
 #include "fem/run/monitor.hpp"
 #include "fem/run/simulate.hpp"
 #include "mapping/error.hpp"
@@ -52,14 +53,10 @@ double simulated_drop(Fabric fabric, const Curve& compression, double length, do
   const RunResult run = simulate(model, request);
   if (run.summary.status != RunStatus::done)
     throw NotFinished("a strip of the bending model: " + run.summary.message);
-  const auto& rest = model.scene().mesh.rest;
-  size_t tip = 0;
-  for (size_t n = 1; n < rest.size(); ++n) {
-    const auto from_tip = [&](size_t k) { return (rest[k] - Eigen::Vector2d(0.5 * length, 0)).norm(); };
-    if (from_tip(n) < from_tip(tip)) tip = n;
-  }
+  const Mesh& mesh = model.scene().mesh;
+  const Foot tip = nearest_foot(mesh, {0.5 * length, 0});
   const Snapshot start = take_snapshot(model, model.flat_state(0), RigDrive{});
-  return start.position[tip].z() - run.final.position[tip].z();
+  return (place_of(mesh, tip, start.position) - place_of(mesh, tip, run.final.position)).z();
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "fem/run/monitor.hpp"
 #include "fem/run/stable_step.hpp"
 #include "fem/run/state_file.hpp"
 #include "planner/base/quantity.hpp"
@@ -17,6 +16,8 @@
 #include "planner/report/vtu.hpp"
 #include "planner/schedule/check.hpp"
 #include "planner/schedule/file.hpp"
+#include "planner/views/files.hpp"
+#include "planner/views/history.hpp"
 
 namespace drapeplan {
 namespace {
@@ -118,39 +119,10 @@ void print_terms(const Model& model, const CommonOptions& options) {
   if (!options.quiet) std::cerr << "terms: " << terms_line(model) << '\n';
 }
 
-/// Displacements of the named points, of the node nearest to each; displacements and forces of the grips.
-json probes_json(const Case& definition, const Model& model, const Snapshot& start, const Snapshot& end) {
-  json probes = json::object();
-  for (const Probe& probe : definition.probes) {
-    const auto& rest = model.scene().mesh.rest;
-    size_t nearest = 0;
-    for (size_t n = 1; n < rest.size(); ++n) {
-      if ((rest[n] - probe.place).norm() < (rest[nearest] - probe.place).norm()) nearest = n;
-    }
-    const Eigen::Vector3d u = end.position[nearest] - start.position[nearest];
-    probes[probe.name] = {{"displacement", {u.x(), u.y(), u.z()}}};
-  }
-  for (size_t k = 0; k < model.scene().grips.size(); ++k) {
-    const Grip& grip = model.scene().grips[k];
-    const auto node = size_t(grip.nodes.front());
-    const Eigen::Vector3d u = end.position[node] - start.position[node], f = end.grip_force[k];
-    probes[grip.name] = {{"displacement", {u.x(), u.y(), u.z()}}, {"force", {f.x(), f.y(), f.z()}}};
-  }
-  return probes;
-}
-
-/// What `probes_json` found, for people.
-std::string probes_text(const json& probes) {
-  std::string text;
-  const auto line = [&text](const std::string& what, const json& v, double scale, const char* unit) {
-    text += fmt::format("{} ({:.3f}, {:.3f}, {:.3f}) {}\n", what, scale * v[0].get<double>(),
-                        scale * v[1].get<double>(), scale * v[2].get<double>(), unit);
-  };
-  for (const auto& [name, probe] : probes.items()) {
-    line(name + " moved by", probe["displacement"], 1e3, "mm");
-    if (probe.contains("force")) line(name + " pulls with", probe["force"], 1, "N");
-  }
-  return text;
+/// What probes and grips ended with, where the case has any.
+void add_probes(const Recorder& recorder, json& result) {
+  json probes = probes_json(recorder.history());
+  if (!probes.empty()) result["probes"] = std::move(probes);
 }
 
 /// A case without grippers: strips and specimens.
@@ -161,28 +133,30 @@ int simulate_free(const Case& definition, const SimulateOptions& options) {
   try_save(options);
   begin_output(out, options.common);
   print_terms(model, options.common);
+  const bool files = !options.common.out.empty();
   std::vector<Snapshot> frames;
+  Recorder recorder(definition, model, nullptr);
   RunRequest request;
   request.duration = definition.duration;
   request.from = part.from ? &*part.from : nullptr;
   request.pause = part.pause;
-  request.frames = options.common.out.empty() ? 0 : options.frames;
+  request.frames = files ? options.frames : 0;
   request.observe = [&frames](const Snapshot& frame) { frames.push_back(frame); };
+  request.samples = files ? kHistoryInstants : 0;
+  request.sample = [&recorder](const Snapshot& now) { recorder.see(now); };
   const RunResult run = simulate(model, request);
+  recorder.see(run.final);
   json result = summary_json(run.summary);
   add_stable_step(model, run, result);
   result["terms"] = model.term_names();
-  std::string text = summary_text(run.summary, model.node_count());
-  if (!definition.probes.empty() || !definition.grips.empty()) {
-    const Snapshot start = take_snapshot(model, model.flat_state(definition.start_height), RigDrive{});
-    result["probes"] = probes_json(definition, model, start, run.final);
-    text += probes_text(result["probes"]);
-  }
+  add_probes(recorder, result);
+  const std::string text = summary_text(run.summary, model.node_count()) + probes_text(recorder.history());
   keep_all([&] { save(options, model, run.state, nullptr); },
            [&] {
-             if (!options.common.out.empty()) {
+             if (files) {
                write_frames(options.common.out, "ply", model.scene().mesh, frames,
                             definition.mold ? &*definition.mold : nullptr, definition.material.thickness);
+               write_run(options.common.out, definition, model, recorder, run);
              }
              deliver(result, text, options.common, &definition);
            });
@@ -226,16 +200,24 @@ std::string score_line(const Drape& drape) {
 
 /// The files of a drape beside result.json and resolved.json.
 void write_drape(const std::filesystem::path& folder, const DrapeProblem& problem, const Drape& drape,
-                 const Schedule& schedule, const SimulateOptions& options) {
+                 const Schedule& schedule, const Recorder& recorder, const SimulateOptions& options) {
   const Case& definition = problem.definition();
-  write_frames(folder, "ply", problem.model(options.fidelity).scene().mesh, drape.frames, &*definition.mold,
-               definition.material.thickness);
+  const Model& model = problem.model(options.fidelity);
+  write_frames(folder, "ply", model.scene().mesh, drape.frames, &*definition.mold, definition.material.thickness);
   write_mold_vtu(folder / "mold.vtu", *definition.mold);
-  write_text(folder / "drape.svg",
-             drape_picture({drape_panel(problem, drape, options.fidelity, options.schedule)},
-                           definition.mold->extent()));
+  const std::string picture = drape_picture({drape_panel(problem, drape, options.fidelity, options.schedule)},
+                                            definition.mold->extent());
+  write_text(folder / "drape.svg", picture);
   write_schedule(folder / "schedule.json", schedule, *definition.grippers);
   write_schedule_csv(folder / "schedule.csv", schedule, *definition.grippers);
+  DrapePage page{.rows = reference_rows(definition),
+                 .figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", picture}},
+                 .files = {{"schedule.json", "the sequence, knots"},
+                           {"schedule.csv", "the same, sampled for a robot controller"},
+                           {"mold.vtu", "the mold, for ParaView"}}};
+  const std::vector<ReportRow> own = drape_rows(options.schedule, drape);
+  page.rows.insert(page.rows.end(), own.begin(), own.end());
+  write_run(folder, definition, model, recorder, drape.run, std::move(page));
 }
 
 int simulate_drape(Case definition, const SimulateOptions& options) {
@@ -249,16 +231,22 @@ int simulate_drape(Case definition, const SimulateOptions& options) {
   try_save(options);
   begin_output(out, options.common);
   print_terms(model, options.common);
-  const Drape drape = problem.run(schedule, options.fidelity, files ? options.frames : 0,
-                                  {part.from ? &*part.from : nullptr, part.pause});
+  Recorder recorder(problem.definition(), model, &schedule);
+  RunPart run_part{.from = part.from ? &*part.from : nullptr, .pause = part.pause};
+  run_part.samples = files ? kHistoryInstants : 0;
+  run_part.sample = [&recorder](const Snapshot& now) { recorder.see(now); };
+  const Drape drape = problem.run(schedule, options.fidelity, files ? options.frames : 0, run_part);
+  recorder.see(drape.run.final);
   json result = summary_json(drape.run.summary);
   add_stable_step(model, drape.run, result);
   add_scores(drape.score, drape.other, result);
   result["terms"] = model.term_names();
-  const std::string text = summary_text(drape.run.summary, model.node_count()) + score_line(drape);
+  add_probes(recorder, result);
+  const std::string text = summary_text(drape.run.summary, model.node_count()) + score_line(drape) +
+                           probes_text(recorder.history());
   keep_all([&] { save(options, model, drape.run.state, &schedule); },
            [&] {
-             if (files) write_drape(options.common.out, problem, drape, schedule, options);
+             if (files) write_drape(options.common.out, problem, drape, schedule, recorder, options);
              deliver(result, text, options.common, &problem.definition());
            });
   return drape.score.valid || drape.run.summary.status == RunStatus::paused ? kDone : kNotFinished;

@@ -257,6 +257,8 @@ Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, i
   request.from = part.from;
   request.pause = part.pause;
   request.press = part.press;
+  request.samples = part.samples;
+  request.sample = std::move(part.sample);
   if (frames > 0) request.observe = [&drape](const Snapshot& frame) { drape.frames.push_back(frame); };
   drape.run = simulate(model, request);
   drape.gap = nodal_gaps(drape.run.final, *case_.mold, case_.material.thickness);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -56,6 +57,8 @@ struct RunPart {
   const State* from = nullptr;
   double pause = 0;
   bool press = true;  ///< where the case has a press
+  int samples = 0;    ///< snapshots handed to `sample`, see RunRequest
+  std::function<void(const Snapshot&)> sample = nullptr;
 };
 
 /// The best that any schedule could do with the ply, in numbers and in words.

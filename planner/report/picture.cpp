@@ -27,7 +27,6 @@ constexpr double kColourBar = 104;    // with its ticks and its title
 constexpr double kRingDistance = 15;  // between circles on the prescribed boundary
 constexpr double kFarAway = 1e5;      // no coordinate is larger than that
 
-constexpr int kMostBands = 14;
 constexpr double kPieceSize = 3;      // edge of the pieces an element is split into
 constexpr double kViewMargin = 0.02;  // around what is seen, over its longer side
 constexpr double kOverhang = 0.25;    // a ply is seen this far beyond the mold, over the mold's longer side
@@ -42,15 +41,6 @@ struct View {
   [[nodiscard]] Vector2d pixel(const Vector3d& p) const {
     return {std::clamp((p.x() - lower.x()) * scale, -kFarAway, kFarAway),
             std::clamp((upper.y() - p.y()) * scale, -kFarAway, kFarAway)};
-  }
-};
-
-/// Colour scale that all panels share.
-struct Bands {
-  double step = 0.001;  ///< [m]
-  int count = 1;
-  [[nodiscard]] std::string colour(int band) const {
-    return sequential_colour(count > 1 ? double(band) / (count - 1) : 0);
   }
 };
 
@@ -92,14 +82,14 @@ View common_view(const std::vector<DrapePanel>& panels, const Extent& mold) {
   return view;
 }
 
+/// Colour scale that all panels share [m].
 Bands common_bands(const std::vector<DrapePanel>& panels) {
   double largest = 0;
   for (const DrapePanel& panel : panels) {
     for (const double gap : panel.gap) largest = std::max(largest, finite_or_zero(gap));
   }
-  if (largest <= 0) return {};
-  const double step = nice_step(largest, kMostBands);
-  return {step, std::max(1, int(std::ceil(largest / step * (1 - 1e-9))))};
+  constexpr double kNoGap = 0.001;  // [m]: one band where the ply lies on the mold everywhere
+  return largest > 0 ? bands_up_to(largest) : Bands{kNoGap, 1};
 }
 
 std::vector<Vector2d> pixels(const View& view, const std::vector<Vector3d>& points) {
@@ -269,26 +259,6 @@ void draw_panel(Svg& svg, const DrapePanel& panel, const Vector2d& corner, const
   }
 }
 
-void draw_colour_bar(Svg& svg, const Vector2d& corner, double height, const Bands& bands) {
-  constexpr double kWidth = 16;
-  const double band_height = height / bands.count;
-  const int decimals = decimals_of(1000 * bands.step);
-  for (int band = 0; band < bands.count; ++band) {
-    const double top = corner.y() + height - (band + 1) * band_height;
-    svg.rectangle({corner.x(), top}, {kWidth, band_height + (band > 0 ? 0.5 : 0)},
-                  {.fill = bands.colour(band)});
-  }
-  svg.rectangle(corner, {kWidth, height}, {.stroke = ink::kSoft, .width = 0.8});
-  for (int band = 0; band <= bands.count; ++band) {
-    const double y = corner.y() + height - band * band_height;
-    svg.line({corner.x() + kWidth, y}, {corner.x() + kWidth + 4, y}, {.stroke = ink::kSoft, .width = 0.8});
-    svg.text({corner.x() + kWidth + 8, y + 4}, fixed(1000 * band * bands.step, decimals),
-             {.size = 11, .colour = ink::kSoft});
-  }
-  svg.text({corner.x() + 62, corner.y() + 0.5 * height}, "gap between ply and mold [mm]",
-           {.size = 12, .anchor = Svg::Anchor::middle, .turn = -90});
-}
-
 /// Entries in a row from `at` on; a new row where one would pass `right`.
 void draw_legend(Svg& svg, Vector2d at, double right, const std::vector<DrapePanel>& panels) {
   const double left = at.x();
@@ -328,7 +298,7 @@ std::string drape_picture(const std::vector<DrapePanel>& panels, const Extent& m
     const Vector2d corner(kLeft + double(k) * (size.x() + kPanelGap), kTop);
     draw_panel(svg, panels[k], corner, view, bands, mold_extent, k == 0);
   }
-  draw_colour_bar(svg, {bar, kTop}, size.y(), bands);
+  draw_colour_bar(svg, {bar, kTop}, size.y(), bands, 1000, "gap between ply and mold [mm]");
   draw_legend(svg, {kLeft, kTop + size.y() + kBottom - 42}, bar + kColourBar, panels);
   return svg.finish();
 }

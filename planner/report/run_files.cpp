@@ -28,25 +28,14 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Published rows first, then the baselines, then the optimum.
 std::vector<ReportRow> rows_of(const DrapeProblem& problem, const PlanResult& result) {
-  std::vector<ReportRow> rows;
-  for (const Reference& reference : problem.definition().references) {
-    Score score;
-    for (const ScorePart& part : kScoreParts) score.*part.value = kNaN;
-    score.valid = true;
-    score.max_gap = reference.max_gap;
-    score.max_boundary_offset = reference.max_boundary_offset;
-    rows.push_back({.name = reference.name, .score = score, .reference = true});
-  }
+  std::vector<ReportRow> rows = reference_rows(problem.definition());
   for (const auto& [name, drape] : {std::pair<const char*, const Drape&>{"uniform", result.uniform},
                                     {"wave", result.wave},
                                     {"optimised", result.best}}) {
     const bool coarse = &drape == &result.best && result.search.best_fidelity != kReport;
-    rows.push_back({.name = coarse ? fmt::format("{} (at {})", name, result.search.best_fidelity) : name,
-                    .score = drape.score});
-    if (!drape.other) continue;
-    rows.push_back({.name = fmt::format("{}, {}", name, drape.other->label()),
-                    .score = drape.other->score,
-                    .beside = true});
+    const std::vector<ReportRow> own =
+        drape_rows(coarse ? fmt::format("{} (at {})", name, result.search.best_fidelity) : name, drape);
+    rows.insert(rows.end(), own.begin(), own.end());
   }
   return rows;
 }
@@ -133,6 +122,28 @@ std::string design_note(const PlanResult& result) {
 std::string best_force_text(const DrapeProblem& problem, const PlanResult& result) {
   const Case& definition = problem.definition();
   return force_text(result.best.score, definition.grippers->actuator_force_limit, definition.score.lag_tolerance);
+}
+
+std::vector<ReportRow> reference_rows(const Case& definition) {
+  std::vector<ReportRow> rows;
+  for (const Reference& reference : definition.references) {
+    Score score;
+    for (const ScorePart& part : kScoreParts) score.*part.value = kNaN;
+    score.valid = true;
+    score.max_gap = reference.max_gap;
+    score.max_boundary_offset = reference.max_boundary_offset;
+    rows.push_back({.name = reference.name, .score = score, .reference = true});
+  }
+  return rows;
+}
+
+std::vector<ReportRow> drape_rows(const std::string& name, const Drape& drape) {
+  std::vector<ReportRow> rows{{.name = name, .score = drape.score}};
+  if (drape.other)
+    rows.push_back({.name = fmt::format("{}, {}", name, drape.other->label()),
+                    .score = drape.other->score,
+                    .beside = true});
+  return rows;
 }
 
 std::string terms_line(const Model& model) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/report/page.hpp"
 #include "planner/report/picture.hpp"
 #include "planner/search/plan.hpp"
 
@@ -16,6 +17,12 @@ std::string terms_line(const Model& model);
 /// The panel of one drape for `drape_picture`.
 DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
                        const std::string& title);
+
+/// The published results that a case names, as rows of a table.
+std::vector<ReportRow> reference_rows(const Case& definition);
+
+/// The scores of one drape: that which the objective takes, and the other one of a ply that was pressed.
+std::vector<ReportRow> drape_rows(const std::string& name, const Drape& drape);
 
 /// Writes a mapped net: net.csv, one row `u,v,x,y,z,shear_deg` per node [m, deg], shear as the mean of the
 /// cells around it; and net.vtu for ParaView.

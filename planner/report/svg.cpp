@@ -149,4 +149,31 @@ void Svg::close_window() {
   body_ += "</svg>\n";
 }
 
+Bands bands_up_to(double largest) {
+  constexpr int kMostBands = 14;
+  const double step = nice_step(largest, kMostBands);
+  return {step, std::max(1, int(std::ceil(largest / step * (1 - 1e-9))))};
+}
+
+void draw_colour_bar(Svg& svg, const Eigen::Vector2d& corner, double height, const Bands& bands, double shown,
+                     const std::string& title) {
+  constexpr double kWidth = 16;
+  const double band_height = height / bands.count;
+  const int decimals = decimals_of(shown * bands.step);
+  for (int band = 0; band < bands.count; ++band) {
+    const double top = corner.y() + height - (band + 1) * band_height;
+    svg.rectangle({corner.x(), top}, {kWidth, band_height + (band > 0 ? 0.5 : 0)},
+                  {.fill = bands.colour(band)});
+  }
+  svg.rectangle(corner, {kWidth, height}, {.stroke = ink::kSoft, .width = 0.8});
+  for (int band = 0; band <= bands.count; ++band) {
+    const double y = corner.y() + height - band * band_height;
+    svg.line({corner.x() + kWidth, y}, {corner.x() + kWidth + 4, y}, {.stroke = ink::kSoft, .width = 0.8});
+    svg.text({corner.x() + kWidth + 8, y + 4}, fixed(shown * band * bands.step, decimals),
+             {.size = 11, .colour = ink::kSoft});
+  }
+  svg.text({corner.x() + 62, corner.y() + 0.5 * height}, title,
+           {.size = 12, .anchor = Svg::Anchor::middle, .turn = -90});
+}
+
 }  // namespace drapeplan

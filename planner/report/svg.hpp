@@ -69,4 +69,21 @@ class Svg {
   std::string body_;
 };
 
+/// Equal bands of a value from zero up, and their colours.
+struct Bands {
+  double step = 1;  ///< in the unit of the value
+  int count = 1;
+  [[nodiscard]] std::string colour(int band) const {
+    return sequential_colour(count > 1 ? double(band) / (count - 1) : 0);
+  }
+};
+
+/// Bands of a round width up to `largest` > 0, at most 14.
+Bands bands_up_to(double largest);
+
+/// A bar of the bands with their limits, upwards; with ticks and title it is 104 px wide.
+/// @param shown  factor from the unit of the value to that of the title.
+void draw_colour_bar(Svg& svg, const Eigen::Vector2d& corner, double height, const Bands& bands, double shown,
+                     const std::string& title);
+
 }  // namespace drapeplan

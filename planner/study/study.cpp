@@ -4,7 +4,6 @@
 #include <time.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "fem/mesh/foot.hpp"
 #include "fem/run/monitor.hpp"
 #include "mapping/error.hpp"
 #include "planner/base/json_text.hpp"
@@ -31,54 +31,6 @@ using nlohmann::json;
 constexpr int kSamples = 21;  // per side of the ply: where places and shear are compared
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-/// Point (u, v) of the ply in an element: corner weights, in the element's own order.
-struct Foot {
-  size_t element = 0;
-  std::array<double, 4> weight{};
-};
-
-/// Where the point lies in the quad: Newton's method for its bilinear coordinates; nothing if outside.
-std::optional<std::array<double, 4>> bilinear_weights(const Mesh& mesh, size_t element, const Vector2d& at) {
-  constexpr int kIterations = 12;
-  constexpr double kSlack = 1e-9;
-  std::array<Vector2d, 4> x;
-  for (size_t c = 0; c < 4; ++c) x[c] = mesh.rest[size_t(mesh.quads[element][c])];
-  const auto inside = [&at](double low, double high, double value) { return low <= value && value <= high; };
-  for (const Eigen::Index axis : {0, 1}) {
-    const auto [low, high] = std::minmax({x[0][axis], x[1][axis], x[2][axis], x[3][axis]});
-    if (!inside(low - kSlack, high + kSlack, at[axis])) return std::nullopt;
-  }
-  Vector2d s(0.5, 0.5);
-  std::array<double, 4> w{};
-  for (int k = 0; k < kIterations; ++k) {
-    w = {(1 - s.x()) * (1 - s.y()), s.x() * (1 - s.y()), s.x() * s.y(), (1 - s.x()) * s.y()};
-    const Vector2d miss = w[0] * x[0] + w[1] * x[1] + w[2] * x[2] + w[3] * x[3] - at;
-    Eigen::Matrix2d slope;
-    slope.col(0) = (1 - s.y()) * (x[1] - x[0]) + s.y() * (x[2] - x[3]);
-    slope.col(1) = (1 - s.x()) * (x[3] - x[0]) + s.x() * (x[2] - x[1]);
-    const double area = slope.determinant();
-    if (!(std::abs(area) > 0)) break;
-    s -= slope.inverse() * miss;
-  }
-  constexpr double kRim = 1e-6;
-  if (!inside(-kRim, 1 + kRim, s.x()) || !inside(-kRim, 1 + kRim, s.y())) return std::nullopt;
-  return w;
-}
-
-/// Nothing off the ply.
-std::optional<Foot> foot_of(const Mesh& mesh, const Vector2d& at) {
-  for (size_t e = 0; e < mesh.quads.size(); ++e) {
-    if (const auto weight = bilinear_weights(mesh, e, at)) return Foot{e, *weight};
-  }
-  return std::nullopt;
-}
-
-Eigen::Vector3d place_of(const Mesh& mesh, const Foot& foot, const Snapshot& at) {
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();
-  for (size_t c = 0; c < 4; ++c) place += foot.weight[c] * at.position[size_t(mesh.quads[foot.element][c])];
-  return place;
-}
-
 /// Of the compared points that lie on the ply; the same ones on every mesh, but for those on an oblique rim.
 std::vector<std::optional<Foot>> feet(const Mesh& mesh, const Ply& ply) {
   std::vector<std::optional<Foot>> result;
@@ -91,7 +43,7 @@ void add_fields(const Mesh& mesh, const std::vector<std::optional<Foot>>& where,
                 StudyRun& run) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const std::optional<Foot>& foot : where) {
-    run.places.push_back(foot ? place_of(mesh, *foot, end) : Eigen::Vector3d::Constant(kNan));
+    run.places.push_back(foot ? place_of(mesh, *foot, end.position) : Eigen::Vector3d::Constant(kNan));
     run.shear_deg.push_back(foot ? kDegrees * end.shear[foot->element] : kNan);
   }
 }
@@ -146,9 +98,9 @@ StudyRun run_free(const Case& definition) {
   if (!run.valid) return run;
   const Snapshot start = take_snapshot(model, model.flat_state(definition.start_height), RigDrive{});
   for (const Probe& probe : definition.probes) {
-    const std::optional<Foot> foot = foot_of(mesh, probe.place);
-    if (foot)
-      run.figures[probe.name] = (place_of(mesh, *foot, result.final) - place_of(mesh, *foot, start)).norm();
+    const Foot foot = nearest_foot(mesh, probe.place);
+    run.figures[probe.name] =
+        (place_of(mesh, foot, result.final.position) - place_of(mesh, foot, start.position)).norm();
   }
   for (size_t k = 0; k < model.scene().grips.size(); ++k)
     run.figures[model.scene().grips[k].name + " force"] = result.final.grip_force[k].norm();

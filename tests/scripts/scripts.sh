@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# scripts/run finds the case among its arguments; scripts/build configures anew where the cache is another folder's.
+# scripts/run finds the case among its arguments; scripts/sensitivity ranks; scripts/article gathers, and keeps what is
+# complete; scripts/build configures anew where the cache is another folder's.
 # Usage: scripts.sh DRAPEPLAN SOURCE_DIR JSON_VALUE
 set -uo pipefail
 . "$(dirname "$0")/../planner/cli/kit.sh"
@@ -33,6 +34,49 @@ runs "$default --json --" --json --
 runs "$default --out --" --out --
 runs "--quiet --help" --quiet --help
 
+# A program whose drapes depend on two fields, and fail with a third value.
+mkdir -p "$root"/cases/{materials,schedules}
+cp "$source"/scripts/{sensitivity,article} "$root/scripts/"
+touch "$root"/cases/{cantilever-150,cantilever-70,bias-extension,flexdraper-4,flexdraper-5x5}.json
+cat >"$root/build/release/drapeplan" <<PROGRAM
+#!/bin/sh
+echo "\$@" >>"$work/calls"
+gap=10 offset=20
+for argument; do
+  case \$argument in
+    *pad_radius=10*) gap=15 ;;
+    *joint_offset=10*) offset=60 ;;
+    *coefficient=3) exit 3 ;;
+  esac
+done
+echo "largest gap \$gap mm; r.m.s. gap 3 mm; largest boundary offset \$offset mm; largest fibre tension 1.5 %; x"
+while [ \$# -gt 0 ]; do
+  if [ "\$1" = --out ]; then
+    mkdir -p "\$2"
+    printf '{\n  "max_gap": 0.01234,\n  "max_boundary_offset": 0.0277\n}\n' >"\$2/result.json"
+  fi
+  shift
+done
+PROGRAM
+"$root/scripts/sensitivity" "$default" screen >"$work/table" 2>"$work/stderr" || fail "sensitivity: $(cat "$work/stderr")"
+ranked() { same "$(sed -n "$1p" "$work/table" | cut -d'|' -f2-4)" "$2" "row $1 of the sensitivity"; }
+ranked 3 ' as in the case |  | 10 '
+ranked 4 ' friction 3 | 0 | failed '
+ranked 5 ' joint offset 10 mm | 200 | 10 '
+ranked 6 ' pad radius 10 mm | 50 | 15 '
+ranked 7 ' generators: axes | 0 | 10 '
+
+calls() { wc -l <"$work/calls"; }
+rm "$work/calls"
+"$root/scripts/article" "$work/article" >"$work/stdout" 2>"$work/stderr" || fail "article: $(cat "$work/stderr")"
+first=$(calls)
+grep -qF '12.3 mm, 27.7 mm' "$work/article/index.html" || fail "the index of the article has no figures"
+"$root/scripts/article" "$work/article" >"$work/stdout" 2>"$work/stderr" || fail "article: $(cat "$work/stderr")"
+same "$(calls)" "$first" "calls of the program where all is complete"
+touch "$root/cases/cantilever-70.json"
+"$root/scripts/article" "$work/article" >"$work/stdout" 2>"$work/stderr" || fail "article: $(cat "$work/stderr")"
+same "$(calls)" "$((first + 2))" "calls of the program after one case was changed"
+
 # CMake is played by a script that notes what it is called with.
 cp "$source/scripts/build" "$root/scripts/"
 printf '#!/bin/sh\necho "$@" >>"%s"\n' "$work/calls" >"$work/bin/cmake"
@@ -58,4 +102,4 @@ configures " --fresh" "the cache of another folder of this checkout"
 ln -s "$root" "$work/link"
 cache "$work/link" "$work/link/build/release"
 configures "" "its own cache by way of a link"
-finish 25
+finish 32
