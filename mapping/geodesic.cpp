@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -152,6 +154,45 @@ Eigen::Vector2d geodesic_direction(const Mold& mold, const Eigen::Vector2d& star
   }
   if (!(shot.miss.norm() <= kGoalTolerance)) throw_at("geodesic: found no line to", goal);
   return gun.velocity(angle).normalized();
+}
+
+TrackWalker::TrackWalker(const Mold& mold, std::vector<Eigen::Vector2d> track)
+    : mold_(mold), track_(std::move(track)), lengths_{0} {
+  if (track_.size() < 2) throw std::invalid_argument("TrackWalker: a track has two points at least");
+  for (size_t k = 1; k < track_.size(); ++k)
+    lengths_.push_back(lengths_.back() + (track_[k] - track_[k - 1]).norm());
+  heading_ = (track_[1] - track_[0]).normalized();
+}
+
+Eigen::Vector3d TrackWalker::next(const Eigen::Vector3d& from, double chord) {
+  constexpr int kParts = 8, kBisections = 60;
+  double near = at_, far = at_;
+  const auto apart = [&](double at) { return (place(at) - from).norm(); };
+  while (apart(far) < chord) {
+    near = far;
+    far += chord / kParts;
+  }
+  for (int k = 0; k < kBisections; ++k) {
+    const double middle = 0.5 * (near + far);
+    (apart(middle) < chord ? near : far) = middle;
+  }
+  at_ = far;
+  return place(far);
+}
+
+Eigen::Vector3d TrackWalker::place(double at) {
+  const auto after = std::lower_bound(lengths_.begin() + 1, lengths_.end(), at);
+  const size_t k = std::min(size_t(after - lengths_.begin()), track_.size() - 1) - 1;
+  heading_ = (track_[k + 1] - track_[k]).normalized();
+  if (after == lengths_.end()) {
+    const Geodesic line = shoot_geodesic(mold_, track_.back(), heading_, at - lengths_.back(), 1);
+    heading_ = line.end_direction.head<2>();
+    return line.points.back();
+  }
+  const Eigen::Vector2d xy = track_[k] + (at - lengths_[k]) * heading_;
+  const Eigen::Vector3d point = mold_.point(xy.x(), xy.y());
+  if (!point.allFinite()) throw_at("no mold under the track at", xy);
+  return point;
 }
 
 }  // namespace drapeplan

@@ -13,6 +13,7 @@
 #include "mapping/cell.hpp"
 #include "mapping/error.hpp"
 #include "mapping/geodesic.hpp"
+#include "mapping/polyline.hpp"
 
 namespace drapeplan {
 namespace {
@@ -23,6 +24,9 @@ constexpr double kMostNodes = 4e6;  // a net beyond this is a typing error in th
 
 // Directions in the x-y plane of the four half lines: +warp, +weft, -warp, -weft.
 using HalfLines = std::array<Eigen::Vector2d, 4>;
+
+// Points of a line in the x-y plane.
+using Track = std::vector<Eigen::Vector2d>;
 
 [[noreturn]] void throw_at(const char* what, const Eigen::Vector3d& at) {
   throw NotFinished(fmt::format("mapping: {} (x, y) = ({:g}, {:g}) m", what, at.x(), at.y()));
@@ -88,17 +92,85 @@ HalfLines mid_side_directions(const Mold& mold, const Eigen::Vector2d& start, co
   return directions;
 }
 
+// Projection of what is at right angles to the left of a direction on the surface.
+Eigen::Vector2d square_to(const Mold& mold, const Eigen::Vector2d& at, const Eigen::Vector2d& direction) {
+  const Jet f = mold.jet(at.x(), at.y());
+  const Eigen::Vector3d tangent(direction.x(), direction.y(), f.zx * direction.x() + f.zy * direction.y());
+  return Eigen::Vector3d(-f.zx, -f.zy, 1).cross(tangent).head<2>();
+}
+
+// The half of a line that leaves the start towards its last point; the start alone if the line ends there. Points
+// within the tolerance of the one before are left out.
+Track half_of(const Track& line, const Eigen::Vector2d& start) {
+  const OnPolyline<Eigen::Vector2d> at = nearest_on_polyline(start, line);
+  Track half{start};
+  for (size_t k = at.segment + 1; k < line.size(); ++k) {
+    if ((line[k] - half.back()).norm() > kOffLine) half.push_back(line[k]);
+  }
+  return half;
+}
+
+// The four tracks of steered generators, in the order of HalfLines; empty where the generator is a geodesic.
+std::array<Track, 4> steered_tracks(const MappingOptions& options) {
+  std::array<Track, 4> tracks;
+  if (options.generators != Generators::steered) return tracks;
+  for (const size_t way : {size_t(0), size_t(1)}) {
+    const Track& line = way == 0 ? options.warp_line : options.weft_line;
+    if (line.empty()) continue;
+    tracks[way] = half_of(line, options.start);
+    tracks[way + 2] = half_of(Track(line.rbegin(), line.rend()), options.start);
+  }
+  return tracks;
+}
+
+// Where a half of a line has no length, the generator goes straight on.
+HalfLines steered_directions(const Mold& mold, const MappingOptions& options) {
+  const std::array<Track, 4> tracks = steered_tracks(options);
+  HalfLines directions;
+  directions.fill(Eigen::Vector2d::Zero());
+  for (size_t k = 0; k < 4; ++k) {
+    const Track &own = tracks[k], &other = tracks[(k + 2) % 4];
+    if (own.size() > 1) directions[k] = (own[1] - own[0]).normalized();
+    else if (other.size() > 1) directions[k] = -(other[1] - other[0]).normalized();
+    else if (!own.empty()) throw WrongInput("mapping: a line of steered generators has no length");
+  }
+  for (const size_t k : {size_t(0), size_t(2)}) {
+    if (options.weft_line.empty()) directions[k + 1] = square_to(mold, options.start, directions[k]);
+  }
+  for (const size_t k : {size_t(1), size_t(3)}) {
+    if (options.warp_line.empty()) directions[k - 1] = -square_to(mold, options.start, directions[k]);
+  }
+  const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); };
+  for (size_t k = 0; k < 4; ++k) {
+    if (!(cross(directions[k], directions[(k + 1) % 4]) > 0))
+      throw WrongInput("mapping: weft_line must cross warp_line from right to left at the start");
+  }
+  return directions;
+}
+
+void check_lines(const MappingOptions& options) {
+  if (options.generators != Generators::steered) return;
+  if (options.warp_line.empty() && options.weft_line.empty())
+    throw WrongInput("mapping: steered generators need a warp_line or a weft_line");
+  for (const Track* line : {&options.warp_line, &options.weft_line}) {
+    if (line->empty()) continue;
+    if (line->size() < 2) throw WrongInput("mapping: a line of steered generators needs two points at least");
+    const double beside = (nearest_on_polyline(options.start, *line).place - options.start).norm();
+    if (!(beside <= kOffLine))
+      throw WrongInput(fmt::format("mapping: start lies {:g} m beside a line of steered generators", beside));
+  }
+}
+
 HalfLines generator_directions(const Mold& mold, double angle, const MappingOptions& options) {
   const Eigen::Vector2d& start = options.start;
   const Eigen::Vector2d warp(std::cos(angle), std::sin(angle));
   const Eigen::Vector2d weft(-warp.y(), warp.x());
+  if (options.generators == Generators::steered) return steered_directions(mold, options);
   if (options.generators == Generators::axes) return {warp, weft, -warp, -weft};
   if (options.generators == Generators::mid_sides) {
     return mid_side_directions(mold, start, {warp, weft, -warp, -weft});
   }
-  const Jet f = mold.jet(start.x(), start.y());
-  const Eigen::Vector3d tangent(warp.x(), warp.y(), f.zx * warp.x() + f.zy * warp.y());
-  const Eigen::Vector2d square = Eigen::Vector3d(-f.zx, -f.zy, 1).cross(tangent).head<2>();
+  const Eigen::Vector2d square = square_to(mold, start, warp);
   return {warp, square, -warp, -square};
 }
 
@@ -125,6 +197,7 @@ struct HalfLine {
   int di = 0, dj = 0;         // to the next node
   int count = 0;              // of nodes after the start
   double chord = 0;           // between nodes [m]
+  Track track = {};           // that it follows; empty: a geodesic
 };
 
 // The first so many nodes of a half line along a geodesic.
@@ -135,6 +208,19 @@ void lay_geodesic(const Mold& mold, const HalfLine& line, int count, int i0, int
     const Geodesic step = chord_step(mold, net.node(i - line.di, j - line.dj), heading, line.chord);
     net.nodes[size_t(i) + size_t(j) * net.u.size()] = step.points.back();
     heading = step.end_direction.head<2>();
+  }
+}
+
+// The nodes of a half line along its track; where that ends, along the geodesic that goes on from it.
+void lay_track(const Mold& mold, const HalfLine& line, int i0, int j0, Net& net) {
+  TrackWalker walker(mold, line.track);
+  for (int k = 1; k <= line.count; ++k) {
+    const int i = i0 + k * line.di, j = j0 + k * line.dj;
+    net.nodes[size_t(i) + size_t(j) * net.u.size()] =
+        walker.next(net.node(i - line.di, j - line.dj), line.chord);
+    if (!walker.ended()) continue;
+    const HalfLine rest{walker.heading(), line.di, line.dj, line.count - k, line.chord};
+    return lay_geodesic(mold, rest, rest.count, i, j, net);
   }
 }
 
@@ -247,6 +333,7 @@ Polygon corners_of(const Ply& ply) {
 
 Net map_ply(const Mold& mold, const Ply& ply, const MappingOptions& options) {
   check(ply, options);
+  check_lines(options);
   const Eigen::AlignedBox2d box = bounding_box(corners_of(ply));
   const Lines u = net_lines(box.min().x(), box.max().x(), options.ply_start.x(), options.cell_size);
   const Lines v = net_lines(box.min().y(), box.max().y(), options.ply_start.y(), options.cell_size);
@@ -258,18 +345,25 @@ Net map_ply(const Mold& mold, const Ply& ply, const MappingOptions& options) {
   if (!net.nodes[start].allFinite()) throw_at("no mold at the start", net.nodes[start]);
 
   const HalfLines directions = generator_directions(mold, ply.angle, options);
+  const std::array<Track, 4> tracks = steered_tracks(options);
   std::array<HalfLine, 4> half_lines;
   for (size_t k = 0; k < 4; ++k) {
     const Lines& lines = k % 2 == 0 ? u : v;
     const int way = k < 2 ? 1 : -1, count = way > 0 ? static_cast<int>(lines.at.size()) - 1 - lines.start : lines.start;
     const double whole = std::abs((way > 0 ? lines.at.back() : lines.at.front()) - lines.at[size_t(lines.start)]);
-    half_lines[k] = {directions[k], k % 2 == 0 ? way : 0, k % 2 == 0 ? 0 : way, count, whole / std::max(count, 1)};
+    half_lines[k] = {directions[k], k % 2 == 0 ? way : 0,           k % 2 == 0 ? 0 : way,
+                     count,         whole / std::max(count, 1), tracks[k]};
   }
   if (options.generators == Generators::minimum_shear) {
     lay_least_shear(mold, half_lines, u.start, v.start, net);
   } else {
     const auto all = static_cast<int>(net.nodes.size());
-    for (const HalfLine& line : half_lines) lay_geodesic(mold, line, all, u.start, v.start, net);
+    for (const HalfLine& line : half_lines) {
+      if (line.track.size() > 1)
+        lay_track(mold, line, u.start, v.start, net);
+      else
+        lay_geodesic(mold, line, all, u.start, v.start, net);
+    }
   }
   for (const int dj : {1, -1}) {
     for (const int di : {1, -1}) fill_quadrant(mold, u.start, v.start, di, dj, net);

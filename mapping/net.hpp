@@ -18,6 +18,7 @@ enum class Generators {
   /// As `perpendicular` at the start; each further step goes where the cell beside it is sheared least (C. Krogh
   /// and others, "A simple MATLAB draping code for fiber-reinforced composites", 2021).
   minimum_shear,
+  steered,  ///< along lines that are given on the mold, as a machine lays fibres
 };
 
 /// Flat ply. Ply frame: u along the warp, v along the weft; origin in a rectangle's middle, or as the
@@ -35,7 +36,14 @@ struct MappingOptions {
   Eigen::Vector2d start{0, 0};      ///< point of the mold where the mapping starts (x, y) [m]
   Eigen::Vector2d ply_start{0, 0};  ///< point of the ply that is placed there (u, v) [m]
   double cell_size = 0.005;         ///< largest edge of a net cell [m]
+  /// Lines of steered generators, straight in plan between points (x, y), in the order of growing u and v; both pass
+  /// through `start`. One may be empty: its generator is the geodesic at right angles to the other one on the
+  /// surface. Beyond its ends a line goes on as a geodesic [m].
+  std::vector<Eigen::Vector2d> warp_line = {}, weft_line = {};
 };
+
+/// By how much `start` may lie beside a line, whose points are rounded in files [m].
+inline constexpr double kOffLine = 1e-4;
 
 /// The mapped ply: a structured net of nodes on the mold; node (i, j) lies at u[i], v[j] of the ply.
 struct Net {
@@ -51,10 +59,11 @@ struct Net {
 /// The ply's corners, counter-clockwise: its outline, or the rectangle's corners from (-,-).
 Polygon corners_of(const Ply& ply);
 
-/// Maps the ply's bounding box onto the mold. [Krogh], "Energy Mapping Algorithm" (after Bergsma and
-/// Huisman): the fibre lines through the start point are geodesics; every other node is the free corner of a
-/// bilinear element that minimises the fibre strain energy of Eq. (3).
-/// @throws NotFinished with the place where the mold ends or the minimisation fails.
+/// Maps the ply's bounding box onto the mold. [Krogh], "Energy Mapping Algorithm" (after Bergsma and Huisman): the
+/// fibre lines through the start point are geodesics, or as `Generators` says; every other node is the free corner of
+/// a bilinear element that minimises the fibre strain energy of Eq. (3).
+/// @throws NotFinished with the place where the mold ends or the minimisation fails; WrongInput where lines of
+/// steered generators miss the start or cross it the wrong way round.
 Net map_ply(const Mold& mold, const Ply& ply, const MappingOptions& options);
 
 /// Mapped place of the ply point (u, v) [m]: bicubic in x-y between net nodes, then put on the mold.

@@ -22,7 +22,7 @@ enum class Dimension {
   velocity,
   acceleration,
   rate,
-  strain,  ///< in tables only: per cent or "1"
+  strain,  ///< per cent or "1"
 };
 
 /// SI value = number * multiply / divide. Both are exact, so that the result is the nearest double to the

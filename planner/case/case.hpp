@@ -128,10 +128,17 @@ struct Reference {
   double max_boundary_offset = 0;  ///< [m]
 };
 
-/// Where the figures of the material come from, in words; all may be empty.
+/// What is known of a curve of the material beside its points; nothing of it changes a run.
+struct CurveNotes {
+  std::string source;              ///< what was measured, by whom, and what is assumed; may be empty
+  std::optional<double> valid_to;  ///< strain or shear angle up to which it was measured and holds [-], [rad]
+  std::optional<double> band;      ///< r.m.s. of what specimens differ from it, of its stress [-]
+};
+
+/// What is known of the material; texts may be empty.
 struct MaterialNotes {
   std::string name, source;
-  std::string tension_source, compression_source, shear_source;
+  CurveNotes tension, compression, shear;
 };
 
 /// Sections that are absent in the file are absent here, and so is their physics.

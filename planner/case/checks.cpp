@@ -9,6 +9,7 @@
 #include <numbers>
 #include <set>
 
+#include "mapping/polyline.hpp"
 #include "planner/base/json_text.hpp"
 #include "planner/case/design.hpp"
 
@@ -69,6 +70,21 @@ void check_cells(FieldReader& reader, const std::string& pointer, const Ply& ply
   }
 }
 
+/// Lines of steered generators lead through the place where the mapping starts.
+void check_lines(const MappingOptions& mapping, FieldReader& reader) {
+  if (mapping.generators != Generators::steered) return;
+  if (mapping.warp_line.empty() && mapping.weft_line.empty())
+    reader.fail("/mapping/generators", "needs a warp_line or a weft_line");
+  for (const auto& [name, line] : {std::pair{"warp_line", &mapping.warp_line}, {"weft_line", &mapping.weft_line}}) {
+    const std::string pointer = fmt::format("/mapping/{}", name);
+    if (line->empty() || !reader.good(pointer)) continue;
+    const double beside = (nearest_on_polyline(mapping.start, *line).place - mapping.start).norm();
+    if (!(beside <= kOffLine))
+      reader.fail(pointer, fmt::format("passes {:.3g} mm beside mapping.start, {}; allowed: {}", 1e3 * beside,
+                                       place_text(mapping.start), format_quantity(kOffLine, Dimension::length)));
+  }
+}
+
 void check_mapping(const CaseFields& fields, FieldReader& reader) {
   const auto& mapping = fields.definition.mapping;
   if (!mapping || !reader.good("/mapping")) return;
@@ -85,7 +101,7 @@ void check_mapping(const CaseFields& fields, FieldReader& reader) {
   const Extent& extent = fields.mold->extent;
   const bool inside = (mapping->start.array() >= extent.lower.array()).all() &&
                       (mapping->start.array() <= extent.upper.array()).all();
-  if (inside) return;
+  if (inside) return check_lines(*mapping, reader);
   const bool stated = reader.good("/mapping/start");
   reader.fail(stated ? "/mapping/start" : "/ply",
               fmt::format("{} outside the mold's extent",
@@ -282,10 +298,13 @@ void check_reach(FieldReader& reader, const std::string& mode, const CurveFields
     if (!reader.good(pointer) || curve.strain.empty() || curve.strain.back() <= most) return;
     reader.fail(pointer, angle ? "reaches beyond a shear of 90 deg" : "reaches beyond a strain of 100 %");
   };
+  const auto place = [&](const std::string& at) {
+    return reader.good(at + "/file") ? at + "/file" : at + "/points";
+  };
   const std::string pointer = "/material/" + mode;
-  check(pointer + "/points", fields.curve);
+  check(place(pointer), fields.curve);
   for (size_t k = 0; k < fields.rates.size(); ++k)
-    check(fmt::format("{}/rates/{}/points", pointer, k), fields.rates[k].curve);
+    check(place(fmt::format("{}/rates/{}", pointer, k)), fields.rates[k].curve);
 }
 
 void check_material(const CaseFields& fields, FieldReader& reader) {

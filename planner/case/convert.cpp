@@ -17,11 +17,17 @@ bool is_straight(const StressTable& table) {
 }
 
 /// A table as fields: every rate with its own points.
-CurveFields curve_fields(const StressTable& table, const std::string& source) {
-  CurveFields fields{table.curves.empty() ? Curve() : table.slowest(), 1, source, {}};
+CurveFields curve_fields(const StressTable& table, const CurveNotes& notes) {
+  CurveFields fields;
+  static_cast<CurveNotes&>(fields) = notes;
+  if (!table.curves.empty()) fields.curve = table.slowest();
   for (size_t k = 0; k < table.rates.size(); ++k)
-    fields.rates.push_back({table.rates[k], 1, table.curves[k]});
+    fields.rates.push_back({table.rates[k], 1, table.curves[k], {}});
   return fields;
+}
+
+bool has_notes(const CurveNotes& notes) {
+  return !notes.source.empty() || notes.valid_to || notes.band;
 }
 
 /// Rate alpha of mass damping [1/s]. [Krogh], Eqs. (4) and (5), per width: the lowest frequency of a strip.
@@ -44,15 +50,15 @@ MaterialFields material_fields(const Fabric& fabric, const MaterialNotes& notes)
   const bool same = is_straight(fabric.tension) && is_straight(fabric.compression) &&
                     fabric.tension.slowest().stress == fabric.compression.slowest().stress &&
                     fabric.shear_measure == ShearMeasure::conjugate;
-  const bool no_sources = (notes.tension_source + notes.compression_source + notes.shear_source).empty();
-  if (same && is_straight(fabric.shear) && no_sources) {
+  const bool noted = has_notes(notes.tension) || has_notes(notes.compression) || has_notes(notes.shear);
+  if (same && is_straight(fabric.shear) && !noted) {
     m.law = 1;
     m.modulus = fabric.tension.slowest().stress[1];
     m.shear_modulus = fabric.shear.slowest().stress[1];
   } else {
-    m.tension = curve_fields(fabric.tension, notes.tension_source);
-    m.compression = curve_fields(fabric.compression, notes.compression_source);
-    m.shear = curve_fields(fabric.shear, notes.shear_source);
+    m.tension = curve_fields(fabric.tension, notes.tension);
+    m.compression = curve_fields(fabric.compression, notes.compression);
+    m.shear = curve_fields(fabric.shear, notes.shear);
     m.shear_measure = int(fabric.shear_measure);
     m.rate_floor = fabric.rate_floor;
     m.rate_filter = fabric.rate_filter;
@@ -155,7 +161,7 @@ void complete_case(CaseFields& fields) {
   Case& c = fields.definition;
   if (const auto& m = fields.material) {
     c.material = fabric_of(*m);
-    c.material_notes = {m->name, m->source, m->tension.source, m->compression.source, m->shear.source};
+    c.material_notes = {m->name, m->source, m->tension, m->compression, m->shear};
   }
   if (c.grippers && c.grippers->interlinks) {
     InterlinkOptions& links = *c.grippers->interlinks;

@@ -19,7 +19,7 @@ void visit_ply(FieldVisitor& v, CaseFields& fields) {
   v.field({"height", &fields.height, "Size along the weft (v)", Dimension::length, positive(kLargestLength),
            false, "needed without `outline`"});
   v.field(
-      {"outline", &ply.outline,
+      {"outline", PointList{&ply.outline},
        "Corners (u, v) of a ply that is no upright rectangle, in order, either way round; instead of `width` "
        "and `height`",
        Dimension::length, from(-kLargestLength, kLargestLength), false, "absent: a rectangle"});
@@ -48,10 +48,21 @@ void visit_grip(FieldVisitor& v, GripOptions& grip) {
 
 void visit_mapping(FieldVisitor& v, MappingOptions& m) {
   v.field(
-      {"generators", choice(m.generators, {"perpendicular", "axes", "mid_sides", "minimum_shear"}),
+      {"generators", choice(m.generators, {"perpendicular", "axes", "mid_sides", "minimum_shear", "steered"}),
        "Fibre lines through the start point: geodesics at right angles; along the projected warp and weft; "
-       "towards the mid-sides of the mold; or, at right angles at the start, where the cells beside each step are "
-       "sheared least"});
+       "towards the mid-sides of the mold; at right angles at the start, and on where the cells beside each step are "
+       "sheared least; or along lines that are given"});
+  v.alternative("generators", "steered", m.generators == Generators::steered, [&] {
+    const auto line = [&v](const char* name, const char* doc, std::vector<Eigen::Vector2d>& points) {
+      v.field({name, PointList{&points, 2}, doc, Dimension::length, {}, false,
+               "absent: a geodesic, at right angles to the other line"});
+    };
+    line("warp_line",
+         "Points (x, y) of the mold under the warp through the start point, in the order of growing u; straight in "
+         "plan between them, beyond the ends a geodesic",
+         m.warp_line);
+    line("weft_line", "The same of the weft, in the order of growing v", m.weft_line);
+  });
   Field start{"start", &m.start, "Point (x, y) of the mold where the mapping starts", Dimension::length};
   start.default_words = "ply.position";
   v.field(start);

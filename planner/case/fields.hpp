@@ -8,6 +8,7 @@
 
 #include "planner/case/case.hpp"
 #include "planner/input/field.hpp"
+#include "planner/tables/curve_file.hpp"
 
 namespace drapeplan {
 
@@ -27,15 +28,17 @@ struct MoldFields {
 struct RateFields {
   double rate = 0;
   double factor = 1;
-  Curve curve;  ///< empty: the mode's own points
+  Curve curve;       ///< empty: the mode's own points
+  std::string file;  ///< table that holds the points; empty: they are stated
 };
 
 /// The stress curves of one mode as the file states them.
-struct CurveFields {
+struct CurveFields : CurveNotes {
   Curve curve;
   double factor = 1;
-  std::string source;
   std::vector<RateFields> rates;  ///< empty: no dependence
+  std::string file;               ///< table that holds the points; empty: they are stated
+  CurveColumns columns;           ///< of all tables of this mode
 };
 
 /// The material as the file states it.

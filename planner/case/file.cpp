@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "planner/case/checks.hpp"
+#include "planner/case/section_fields.hpp"
 #include "planner/input/document.hpp"
 #include "planner/input/reader.hpp"
 #include "planner/input/writer.hpp"
@@ -19,6 +20,7 @@ CaseReading read_document(const InputDocument& document, const std::string& name
   fields.definition.name = name;
   FieldReader reader(document);
   reader.read([&fields](FieldVisitor& visitor) { visit_case(visitor, fields); });
+  if (fields.material) reading.notes = read_curve_files(*fields.material, "/material", reader);
   complete_ply(fields);
   check_case(fields, reader);
   reading.errors.insert(reading.errors.end(), reader.errors().begin(), reader.errors().end());

@@ -15,6 +15,7 @@ namespace drapeplan {
 struct CaseReading {
   Case definition;                 ///< only meaningful without errors
   std::vector<InputError> errors;  ///< all of them, in the order of the file
+  std::vector<std::string> notes;  ///< tables of curves that were smoothed, and what the curves miss
 };
 
 /// Reads and checks a case file with its `path=value` overrides (dots between keys; the value is JSON or a
@@ -25,7 +26,7 @@ CaseReading read_case(const std::filesystem::path& file, const std::vector<std::
 CaseReading changed_case(const Case& definition, const std::vector<std::string>& overrides);
 
 /// The complete case with all defaults as JSON, in the file's own format and units, self-contained (a
-/// referenced material or mold is written out). Reading it again gives the same case.
+/// referenced material, mold or curve is written out). Reading it again gives the same case.
 nlohmann::json resolved_case(const Case& definition);
 
 /// JSON Schema (draft 2020-12) of the case file.

@@ -1,5 +1,8 @@
 #include "planner/case/section_fields.hpp"
 
+#include <fmt/format.h>
+
+#include "planner/base/quantity.hpp"
 #include "planner/input/kit.hpp"
 
 namespace drapeplan {
@@ -13,9 +16,24 @@ void visit_curve(FieldVisitor& v, CurveFields& fields, Dimension abscissa) {
            "do not decrease; straight between rows, and beyond the last one with the last slope",
            Dimension::none,
            {},
-           true});
+           false,
+           "needed without `file`"});
+  v.field({"file", &fields.file,
+           "Text table that holds the points instead, relative to the file that names it (with --set: to the case): "
+           "columns of strain and stress with units, as programs write them. Up to 100 rows that never fall are "
+           "taken as they are; others are smoothed, and the source says what the curve misses"});
+  const bool named = !fields.columns.strain.empty() || !fields.columns.stress.empty();
+  v.section({"columns", "What columns of tables are called, where that is not usual", false, {}, true}, named, [&] {
+    v.field({"strain", &fields.columns.strain, "Name of the column of strains, or of shear angles"});
+    v.field({"stress", &fields.columns.stress, "Name of the column of stresses"});
+  });
   v.field({"factor", &fields.factor, "All stresses are multiplied by it", Dimension::none, positive()});
   v.field({"source", &fields.source, "What was measured, by whom, and what is assumed"});
+  v.field({"valid_to", &fields.valid_to,
+           "How far the curve was measured and holds; a drape that goes beyond it says so", abscissa, positive(),
+           false, "not known"});
+  v.field({"band", &fields.band, "R.m.s. of what specimens differ from the curve, as a share of its stress",
+           Dimension::none, from(0), false, "not known"});
   ObjectList rates =
       object_list("rates", "Curves by the rate of strain, slowest first; absent: no dependence on the rate",
                   fields.rates, [&v, abscissa](RateFields& rate) {
@@ -26,9 +44,52 @@ void visit_curve(FieldVisitor& v, CurveFields& fields, Dimension abscissa) {
                     Field points{"points", Table{&rate.curve, abscissa}, "Curve at this rate"};
                     points.default_words = "the points of the mode";
                     v.field(points);
+                    v.field({"file", &rate.file, "Text table that holds the points instead, see `file` of the mode"});
                   });
   v.list(rates);
 }
+
+/// Reads the tables of one mode.
+class CurveFiles {
+ public:
+  CurveFiles(CurveFields& fields, Dimension abscissa, std::string pointer, FieldReader& reader,
+             std::vector<std::string>& notes)
+      : fields_(fields), abscissa_(abscissa), pointer_(std::move(pointer)), reader_(reader), notes_(notes) {}
+
+  void read() {
+    if (!reader_.good(pointer_)) return;
+    bool needed = fields_.rates.empty();
+    for (size_t k = 0; k < fields_.rates.size(); ++k) {
+      RateFields& rate = fields_.rates[k];
+      needed = needed || (rate.file.empty() && rate.curve.strain.empty());
+      read(rate.file, rate.curve, fmt::format("{}/rates/{}", pointer_, k),
+           fmt::format("at {}, ", format_quantity(rate.rate, Dimension::rate)));
+    }
+    if (needed && fields_.file.empty() && fields_.curve.strain.empty())
+      reader_.add_error(pointer_, "\"points\" is missing; a curve has either points or a file");
+    read(fields_.file, fields_.curve, pointer_, "");
+  }
+
+ private:
+  void read(std::string& file, Curve& curve, const std::string& pointer, const std::string& which) {
+    if (file.empty()) return;
+    if (!curve.strain.empty())
+      return reader_.fail(pointer + "/file", "belongs to a curve without points; these would be read from it");
+    CurveReading reading = read_curve(reader_.file_at(pointer + "/file", file), abscissa_, fields_.columns);
+    if (!reading.errors.empty()) return reader_.add_errors(pointer + "/file", reading.errors);
+    curve = std::move(reading.curve);
+    const std::string text = fit_text(file, reading.fit);
+    fields_.source += fmt::format("{}Points: {}{}", fields_.source.empty() ? "" : ". ", which, text);
+    if (reading.fit.knots > 0) notes_.push_back(fmt::format("{}: {}", pointer, text));
+    file.clear();
+  }
+
+  CurveFields& fields_;
+  Dimension abscissa_;
+  std::string pointer_;
+  FieldReader& reader_;
+  std::vector<std::string>& notes_;
+};
 
 }  // namespace
 
@@ -66,6 +127,16 @@ void visit_material(FieldVisitor& v, MaterialFields& m) {
     v.field({"shear_modulus", &m.shear_modulus, "Shear stress over shear angle", Dimension::stress, from(0),
              true});
   });
+}
+
+std::vector<std::string> read_curve_files(MaterialFields& material, const std::string& pointer,
+                                          FieldReader& reader) {
+  std::vector<std::string> notes;
+  if (material.law != 0) return notes;
+  CurveFiles(material.tension, Dimension::strain, pointer + "/tension", reader, notes).read();
+  CurveFiles(material.compression, Dimension::strain, pointer + "/compression", reader, notes).read();
+  CurveFiles(material.shear, Dimension::angle, pointer + "/shear", reader, notes).read();
+  return notes;
 }
 
 void visit_mold(FieldVisitor& v, MoldFields& m) {

@@ -102,8 +102,8 @@ struct TypeSchema {
     return fixed_list({{"type", "integer"}, {"minimum", 1}}, 2);
   }
   json operator()(Extent*) const { return fixed_list(fixed_list(number_schema(field), 2), 2); }
-  json operator()(PointList*) const {
-    return {{"type", "array"}, {"items", fixed_list(number_schema(field), 2)}, {"minItems", 3}};
+  json operator()(const PointList& target) const {
+    return {{"type", "array"}, {"items", fixed_list(number_schema(field), 2)}, {"minItems", target.fewest}};
   }
   json operator()(const Choice& target) const { return {{"enum", target.words}}; }
   json operator()(const ChoiceList& target) const {

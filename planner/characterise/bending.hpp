@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "planner/case/fields.hpp"
-#include "planner/measured/smooth.hpp"
+#include "planner/tables/smooth.hpp"
 
 namespace drapeplan {
 

@@ -35,6 +35,8 @@ std::string specimens(size_t count) {
 CurveFields tension_fields(const TensionLaw& law, const Tests& tests) {
   CurveFields fields;
   fields.curve = law.curve;
+  fields.valid_to = law.valid_to;
+  fields.band = law.band;
   fields.source = fmt::format(
       "Tension of {} at {}; the curve is that of the fastest rate, {:.2g} 1/s{}. Measured up to {:.3g} %; "
       "specimens differ from it by {:.2g} % of its largest stress (r.m.s.)",
@@ -48,9 +50,11 @@ CurveFields tension_fields(const TensionLaw& law, const Tests& tests) {
 CurveFields shear_fields(const ShearLaw& law, const std::string& what) {
   CurveFields fields;
   fields.curve = law.table.curves.front();
+  fields.valid_to = law.valid_to;
+  fields.band = law.band;
   if (law.table.rate_dependent()) {
     for (size_t k = 0; k < law.table.rates.size(); ++k)
-      fields.rates.push_back({law.table.rates[k], 1, law.table.curves[k]});
+      fields.rates.push_back({law.table.rates[k], 1, law.table.curves[k], {}});
   }
   fields.source = fmt::format("{}. Measured up to {:.3g} deg, angles hold to {:.3g} deg; specimens differ from "
                               "their mean by {:.2g} % of the force (r.m.s.)",
@@ -89,7 +93,9 @@ StripHistory history_of(const CantileverTest& test, const Tests& tests) {
 CurveFields compression_fields(const CompressionLaw& law, const StripHistory& strip, double thickness) {
   CurveFields fields;
   fields.curve = law.master;
-  for (size_t k = 0; k < law.factors.size(); ++k) fields.rates.push_back({law.rates[k], law.factors[k], {}});
+  fields.valid_to = *std::max_element(strip.tips.root_strain.begin(), strip.tips.root_strain.end());
+  for (size_t k = 0; k < law.factors.size(); ++k)
+    fields.rates.push_back({law.rates[k], law.factors[k], {}, {}});
   fields.source = fmt::format(
       "Inverse bending model: the master curve has the slope of tension up to 0.1 % and 0.5 GPa beyond; its "
       "factors are those with which a simulated strip of {:g} mm drops as measured, from {:.1f} mm after {:g} s "

@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "mapping/error.hpp"
-#include "planner/measured/smooth.hpp"
+#include "planner/tables/smooth.hpp"
 
 namespace drapeplan {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fem/law/fabric.hpp"
-#include "planner/measured/smooth.hpp"
+#include "planner/tables/smooth.hpp"
 #include "planner/measured/tests_file.hpp"
 
 namespace drapeplan {

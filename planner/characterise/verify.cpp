@@ -10,7 +10,7 @@
 
 #include "fem/run/monitor.hpp"
 #include "fem/run/simulate.hpp"
-#include "planner/measured/smooth.hpp"
+#include "planner/tables/smooth.hpp"
 #include "planner/drape/problem.hpp"
 
 namespace drapeplan {

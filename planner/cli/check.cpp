@@ -30,7 +30,9 @@ int check(const CheckOptions& options) {
     json errors = json::array();
     for (const InputError& error : reading.errors) errors.push_back(error_json(error));
     cases.push_back({{"file", file}, {"valid", reading.errors.empty()}, {"errors", std::move(errors)}});
+    cases.back()["notes"] = reading.notes;
     if (reading.errors.empty()) text += file + ": good\n";
+    for (const std::string& note : reading.notes) text += fmt::format("  {}\n", note);
     all.insert(all.end(), reading.errors.begin(), reading.errors.end());
     single = std::move(reading.definition);
   }

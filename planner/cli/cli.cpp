@@ -61,6 +61,9 @@ Case load_case(const std::string& file, const CommonOptions& options, const std:
     }
   }
   errors.insert(errors.end(), reading.errors.begin(), reading.errors.end());
+  if (!options.quiet && errors.empty()) {
+    for (const std::string& note : reading.notes) std::cerr << fmt::format("note: {}: {}\n", file, note);
+  }
   if (options.seed) reading.definition.optimise.seed = *options.seed;
   return std::move(reading.definition);
 }

@@ -131,6 +131,7 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
              {"meaning", explain_reach(problem.reach_problem(), problem.reach())}};
   json best{{"candidate", search.best.name}};
   add_scores(result.best.score, result.best.other, best);
+  best["warnings"] = range_warnings(problem.definition().material_notes, result.best.score);
   best["fidelity"] = search.best_fidelity;
   if (result.best.score.valid) best["schedule"] = "schedule.json";
   if (result.design) best["design"] = design_json(result);

@@ -240,6 +240,9 @@ int simulate_drape(Case definition, const SimulateOptions& options) {
   json result = summary_json(drape.run.summary);
   add_stable_step(model, drape.run, result);
   add_scores(drape.score, drape.other, result);
+  const std::vector<std::string> warnings = range_warnings(problem.definition().material_notes, drape.score);
+  print_warnings(warnings, options.common);
+  result["warnings"] = warnings;
   result["terms"] = model.term_names();
   add_probes(recorder, result);
   const std::string text = summary_text(drape.run.summary, model.node_count()) + score_line(drape) +

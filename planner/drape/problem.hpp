@@ -134,4 +134,8 @@ class DrapeProblem {
   std::map<std::string, std::unique_ptr<Lazy<Model>>> models_;
 };
 
+/// What a drape asked of the material beyond what its curves are known to hold for (`valid_to`): one text for each
+/// such curve; none of a score that is not valid.
+std::vector<std::string> range_warnings(const MaterialNotes& material, const Score& score);
+
 }  // namespace drapeplan

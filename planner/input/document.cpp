@@ -200,6 +200,12 @@ InputError InputDocument::error_at(const std::string& pointer, std::string messa
   }
 }
 
+std::filesystem::path InputDocument::file_at(const std::string& pointer, const std::string& name) const {
+  const Source& source = source_of(pointer);
+  const std::filesystem::path beside(source.override_text ? sources_.front().file : source.file);
+  return (beside.parent_path() / name).lexically_normal();
+}
+
 void InputDocument::sort(std::vector<InputError>& errors) const {
   const auto rank = [this](const InputError& error) {
     for (size_t k = 0; k < sources_.size(); ++k) {

@@ -35,6 +35,9 @@ class InputDocument {
   /// An error about the value at `pointer` of the whole document, placed in the file where that value stands
   /// (or, if it is missing, the value around it).
   [[nodiscard]] InputError error_at(const std::string& pointer, std::string message) const;
+  /// The file that the value at `pointer` of the whole document names: relative to the file in which the value is
+  /// written, or, if an override holds it, to the document's own.
+  [[nodiscard]] std::filesystem::path file_at(const std::string& pointer, const std::string& name) const;
   /// Sorts errors into the order of the files and lines, overrides last.
   void sort(std::vector<InputError>& errors) const;
 

@@ -56,12 +56,15 @@ struct WordOrRows {
   std::array<std::vector<std::vector<double>>*, 2> rows{};
 };
 
-/// Points in order, three at least: corners of a polygon.
-using PointList = std::vector<Eigen::Vector2d>;
+/// Points in order: corners of a polygon, or a line.
+struct PointList {
+  std::vector<Eigen::Vector2d>* points = nullptr;
+  size_t fewest = 3;
+};
 
 using Target = std::variant<double*, std::optional<double>*, int*, unsigned*, bool*, std::string*,
                             Eigen::Vector2d*, Eigen::Vector3d*, std::optional<std::array<int, 2>>*, Extent*,
-                            PointList*, Choice, ChoiceList, Table, WordOrRows>;
+                            PointList, Choice, ChoiceList, Table, WordOrRows>;
 
 struct Field {
   std::string name;

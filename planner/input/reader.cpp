@@ -30,6 +30,11 @@ void FieldReader::add_error(const std::string& pointer, std::string message) {
   failed_.push_back(pointer);
 }
 
+void FieldReader::add_errors(const std::string& pointer, const std::vector<InputError>& errors) {
+  errors_.insert(errors_.end(), errors.begin(), errors.end());
+  failed_.push_back(pointer);
+}
+
 bool FieldReader::good(const std::string& pointer) const {
   if (!document_.root().contains(json::json_pointer(pointer))) return false;
   return std::none_of(failed_.begin(), failed_.end(),

@@ -22,6 +22,12 @@ class FieldReader : public FieldVisitor {
   void fail(const std::string& pointer, const std::string& message);
   /// The same without the value.
   void add_error(const std::string& pointer, std::string message);
+  /// Adds errors of a file that the value at `pointer` names.
+  void add_errors(const std::string& pointer, const std::vector<InputError>& errors);
+  /// The file that the value at `pointer` names, see InputDocument.
+  [[nodiscard]] std::filesystem::path file_at(const std::string& pointer, const std::string& name) const {
+    return document_.file_at(pointer, name);
+  }
   /// Whether the value at `pointer` is there and nothing at or below it is wrong.
   [[nodiscard]] bool good(const std::string& pointer) const;
 

@@ -146,17 +146,17 @@ struct ValueReader {
     return good;
   }
 
-  bool points(const json& value, PointList& target) const {
-    constexpr size_t kFewest = 3;
-    if (!value.is_array() || value.size() < kFewest) {
-      return fail(
-          "expected a list of at least three points, e.g. [[\"0 mm\", \"0 mm\"], [\"90 mm\", \"0 mm\"], "
-          "[\"0 mm\", \"60 mm\"]]");
+  bool points(const json& value, const PointList& target) const {
+    if (!value.is_array() || value.size() < target.fewest) {
+      const bool line = target.fewest == 2;
+      return fail(fmt::format("expected a list of at least {} points, e.g. [[\"0 mm\", \"0 mm\"], [\"90 mm\", "
+                              "\"0 mm\"]{}]",
+                              line ? "two" : "three", line ? "" : ", [\"0 mm\", \"60 mm\"]"));
     }
-    PointList read(value.size());
+    std::vector<Eigen::Vector2d> read(value.size());
     bool good = true;
     for (size_t k = 0; k < value.size(); ++k) good = at(k).vector(value[k], read[k]) && good;
-    if (good) target = std::move(read);
+    if (good) *target.points = std::move(read);
     return good;
   }
 
@@ -331,7 +331,7 @@ bool read_value(const json& value, const Field& field, const ValueFault& fault) 
         return reader.at(1).integer(value[1], pair[1]) && first;
       },
       [&](Extent* target) { return reader.extent(value, *target); },
-      [&](PointList* target) { return reader.points(value, *target); },
+      [&](const PointList& target) { return reader.points(value, target); },
       [&](const Choice& target) {
         int index = 0;
         if (!reader.word(value, target.words, index)) return false;
@@ -365,9 +365,9 @@ json write_value(const Field& field) {
         return json::array({lengths(Eigen::Vector2d(target->lower.x(), target->upper.x())),
                             lengths(Eigen::Vector2d(target->lower.y(), target->upper.y()))});
       },
-      [&](PointList* target) {
+      [&](const PointList& target) {
         json list = json::array();
-        for (const Eigen::Vector2d& point : *target) list.push_back(lengths(point));
+        for (const Eigen::Vector2d& point : *target.points) list.push_back(lengths(point));
         return list.empty() ? json() : list;
       },
       [](const Choice& target) { return json(target.words[size_t(target.get())]); },

@@ -297,6 +297,7 @@ TestsReading read_tests(const std::filesystem::path& file, const std::vector<std
   reading.tests.name = file.stem().string();
   FieldReader reader(document);
   reader.read([&](FieldVisitor& visitor) { visit_tests(visitor, reading.tests); });
+  if (reading.tests.assumed) read_curve_files(*reading.tests.assumed, "/assumed", reader);
   DataReader data(file.parent_path(), reader);
   data.read(reading.tests);
   reading.errors.insert(reading.errors.end(), reader.errors().begin(), reader.errors().end());

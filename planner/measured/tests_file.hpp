@@ -8,7 +8,7 @@
 
 #include "planner/case/fields.hpp"
 #include "planner/measured/strip_image.hpp"
-#include "planner/measured/test_table.hpp"
+#include "planner/tables/test_table.hpp"
 #include "planner/input/error.hpp"
 
 namespace drapeplan {

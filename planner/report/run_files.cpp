@@ -89,11 +89,13 @@ Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows, c
   return chart;
 }
 
-std::vector<std::string> notes_of(const DrapeProblem& problem) {
+std::vector<std::string> notes_of(const DrapeProblem& problem, const Score& best) {
   std::vector<std::string> notes = map_warnings(problem.definition(), problem.mapping());
   const MaterialNotes& material = problem.definition().material_notes;
+  const std::vector<std::string> beyond = range_warnings(material, best);
+  notes.insert(notes.end(), beyond.begin(), beyond.end());
   for (const std::string* source :
-       {&material.source, &material.tension_source, &material.compression_source, &material.shear_source}) {
+       {&material.source, &material.tension.source, &material.compression.source, &material.shear.source}) {
     if (!source->empty()) notes.push_back(*source);
   }
   if (const std::string& rig = problem.definition().grippers_source; !rig.empty()) notes.push_back("Grippers: " + rig);
@@ -241,7 +243,7 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   report.reach = explain_reach(problem.reach_problem(), problem.reach()) + " " + problem.ply_floor().meaning;
   if (const std::string force = best_force_text(problem, result); !force.empty()) report.reach += " " + force;
   report.rows = rows_of(problem, result);
-  report.notes = notes_of(problem);
+  report.notes = notes_of(problem, result.best.score);
   report.figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", drape},
                     {"Who goes down when", sequence},
                     {"Heights of the joints over time",

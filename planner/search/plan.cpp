@@ -58,12 +58,14 @@ class ReportedDrapes {
   std::map<std::uint64_t, Drape> drapes_;
 };
 
-/// Takes out what people call things and where they have them from, at any depth: members that are texts.
+/// Takes out what people call things, where they have them from and how far these hold, at any depth: members that
+/// are texts, and bands.
 void erase_words(nlohmann::json& value) {
   if (value.is_object()) {
-    for (const char* key : {"name", "source"}) {
+    for (const char* key : {"name", "source", "valid_to"}) {
       if (value.contains(key) && value[key].is_string()) value.erase(key);
     }
+    value.erase("band");
   }
   for (nlohmann::json& part : value) {
     if (part.is_structured()) erase_words(part);

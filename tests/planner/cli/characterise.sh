@@ -11,6 +11,9 @@ expect 0 characterise data/tests.json --out found --json
 within stdout /bias_extension/valid_to_deg 29.99 30.01
 within stdout /verifications/0/error 0 0.1
 same_file stdout found/result.json
+value found/material.json /shear/valid_to | grep -q '^30 deg$\|^0.523' || fail "valid_to: $(value found/material.json /shear/valid_to)"
+within found/material.json /shear/band 0.001 0.1
+within found/material.json /tension/band 0.001 0.1
 [ -s found/characterisation.html ] || fail "no page"
 value found/material.json /shear/source >source
 grep -q 'Bias extension of 9 specimens' source || fail "the material does not say where its shear is from"

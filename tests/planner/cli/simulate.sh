@@ -34,6 +34,17 @@ same "$(value "$work/first.json" /state_hash)" "$(value "$work/stdout" /state_ha
 expect 0 simulate "$quick" --json --fidelity screen --schedule "$work/out/schedule.json"
 same "$(value "$work/first.json" /state_hash)" "$(value "$work/stdout" /state_hash)" "schedule read from its file"
 
+# A drape that leaves what a curve is known to hold for says so, and moves as before; shipped materials are stable.
+lacks "$work/first.json" /warnings/0
+expect 0 simulate "$quick" --json --fidelity screen --set material.shear.valid_to='1 deg'
+value "$work/stdout" /warnings/0 | grep -qF 'beyond what material.shear holds for (1.0 deg)' || fail "no warning"
+grep -qF 'warning: the largest shear is' "$work/stderr" || fail "no warning on stderr"
+same "$(value "$work/first.json" /state_hash)" "$(value "$work/stdout" /state_hash)" "with valid_to"
+for material in "$source"/cases/materials/*.json; do
+  expect 0 simulate "$quick" --json --fidelity screen --set material="materials/$(basename "$material")"
+  within "$work/stdout" /energy/balance_error 0 1e-6
+done
+
 # Another schedule is another run: the hash does see the motion.
 expect 0 simulate "$quick" --json --fidelity screen --schedule wave
 [ "$(value "$work/first.json" /state_hash)" != "$(value "$work/stdout" /state_hash)" ] || fail "wave equals uniform"

@@ -1,4 +1,4 @@
-#include "planner/measured/test_table.hpp"
+#include "planner/tables/test_table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "planner/measured/test_table.hpp"
+#include "planner/tables/test_table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -27,8 +27,8 @@ struct QuantityWords {
   std::vector<std::string> headers;
 };
 
-const std::array<QuantityWords, 5>& all_quantities() {
-  static const std::array<QuantityWords, 5> list{{
+const std::array<QuantityWords, 7>& all_quantities() {
+  static const std::array<QuantityWords, 7> list{{
       {TestQuantity::time, "time", Dimension::time, {"time", "test time", "zeit", "prüfzeit", "t"}},
       {TestQuantity::displacement,
        "displacement",
@@ -47,6 +47,16 @@ const std::array<QuantityWords, 5>& all_quantities() {
        "deflection",
        Dimension::length,
        {"deflection", "tip deflection", "tip", "durchbiegung"}},
+      {TestQuantity::strain,
+       "strain",
+       Dimension::strain,
+       {"strain", "nominal strain", "engineering strain", "tensile strain", "compressive strain", "dehnung",
+        "stauchung", "epsilon", "eps"}},
+      {TestQuantity::stress,
+       "stress",
+       Dimension::stress,
+       {"stress", "nominal stress", "engineering stress", "tensile stress", "compressive stress", "shear stress",
+        "spannung", "zugspannung", "druckspannung", "schubspannung", "sigma", "tau"}},
   }};
   return list;
 }
@@ -96,8 +106,8 @@ struct Line {
 
 class TableReader {
  public:
-  TableReader(const std::filesystem::path& file, const std::vector<WantedColumn>& wanted)
-      : file_(file), wanted_(wanted) {}
+  TableReader(const std::filesystem::path& file, const std::vector<WantedColumn>& wanted, size_t fewest)
+      : file_(file), wanted_(wanted), fewest_(fewest) {}
 
   TableReading read() {
     if (load() && find_names() && find_units()) read_rows();
@@ -261,14 +271,14 @@ class TableReader {
       }
       table.lines.push_back(line.number);
     }
-    constexpr size_t kFewest = 10;
-    if (table.rows() < kFewest)
+    if (table.rows() < fewest_)
       fail(lines_[names_].number, "",
-           fmt::format("has {} rows of numbers; a test needs {} at least", table.rows(), kFewest));
+           fmt::format("has {} rows of numbers; it needs {} at least", table.rows(), fewest_));
   }
 
   const std::filesystem::path& file_;
   const std::vector<WantedColumn>& wanted_;
+  size_t fewest_;
   std::vector<Line> lines_;
   bool decimal_comma_ = false;
   size_t names_ = 0, first_row_ = 0;
@@ -278,8 +288,9 @@ class TableReader {
 
 }  // namespace
 
-TableReading read_test_table(const std::filesystem::path& file, const std::vector<WantedColumn>& wanted) {
-  return TableReader(file, wanted).read();
+TableReading read_test_table(const std::filesystem::path& file, const std::vector<WantedColumn>& wanted,
+                             size_t fewest) {
+  return TableReader(file, wanted, fewest).read();
 }
 
 std::string quantity_name(TestQuantity quantity) {

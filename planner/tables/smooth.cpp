@@ -1,4 +1,4 @@
-#include "planner/measured/smooth.hpp"
+#include "planner/tables/smooth.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>

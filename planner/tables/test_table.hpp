@@ -1,4 +1,4 @@
-// Tables of a test machine: text with columns of numbers, as its program exports them.
+// Tables of numbers: text with columns, as programs of test machines and of spreadsheets write them.
 #pragma once
 
 #include <filesystem>
@@ -17,6 +17,8 @@ enum class TestQuantity {
   force,         ///< [N]
   angle,         ///< measured shear angle [rad]
   deflection,    ///< of a strip's tip, downwards [m]
+  strain,        ///< nominal [-]
+  stress,        ///< nominal [Pa]
 };
 
 /// A column that is asked for.
@@ -42,10 +44,15 @@ struct TableReading {
   std::vector<InputError> errors;  ///< with file and line
 };
 
+/// Rows of numbers that the record of a test has at least.
+inline constexpr size_t kFewestTestRows = 10;
+
 /// Reads a table. Lines before the row of names are the machine's notes. Units stand behind the names, in
 /// brackets ("Load (kN)", "Kraft [N]"), or in the row below. Columns are separated by semicolons, tabs or
 /// commas; where commas do not separate, they may be decimal points. Never throws for bad input.
-TableReading read_test_table(const std::filesystem::path& file, const std::vector<WantedColumn>& wanted);
+/// @param fewest  rows of numbers that it must have.
+TableReading read_test_table(const std::filesystem::path& file, const std::vector<WantedColumn>& wanted,
+                             size_t fewest = kFewestTestRows);
 
 /// "force": as fields of a file and messages call it.
 std::string quantity_name(TestQuantity quantity);
