@@ -128,10 +128,11 @@ void draw_top_legend(Svg& svg, const Chart& chart, double right, double left) {
   for (size_t k = chart.series.size(); k-- > 0;) {
     const ChartSeries& series = chart.series[k];
     if (series.name.empty()) continue;
-    constexpr double kLetter = 5.8, kRow = 18;  // mean width of a letter at this size; height of a row
-    const double wide = kLetter * double(series.name.size()) + 6;
+    // Mean width of a letter at this size, in a wide font; a dot and its distance; height of a row.
+    constexpr double kLetter = 7, kDot = 10, kRow = 18;
+    const double wide = kDot + kLetter * double(series.name.size());
     if (legend - wide < left) legend = right, base -= kRow;
-    svg.text({legend, base}, series.name, {.size = 12, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
+    svg.text({legend - wide + kDot, base}, series.name, {.size = 12, .colour = ink::kSoft});
     svg.circle({legend - wide, base - 4}, 4, {.fill = series_colour(chart, k)});
     legend -= wide + 18;
   }
