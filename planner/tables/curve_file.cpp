@@ -73,11 +73,14 @@ class CurveReader {
   }
 
   bool in_order() {
+    double farthest = strain_.front();
     for (size_t k = 1; k < strain_.size(); ++k) {
-      if (strain_[k] < strain_[k - 1] - kBackwards * reach_)
+      farthest = std::max(farthest, strain_[k]);
+      if (strain_[k] < farthest - kBackwards * reach_)
         return fail(k, x_name_,
-                    fmt::format("jumps back from {} to {}: rows are not in their order, or hold several curves",
-                                x_text(strain_[k - 1]), x_text(strain_[k])));
+                    fmt::format("goes back from {} to {}: rows are not in their order, hold several curves, or go on "
+                                "while the specimen is unloaded",
+                                x_text(farthest), x_text(strain_[k])));
     }
     return true;
   }

@@ -22,7 +22,9 @@ MaterialFields truth(bool shipped) {
   material.tension.curve = {{0, 0.001, 0.002, 0.004, 0.006}, {0, 8e6, 18e6, 40e6, 64e6}};
   const Curve shear{{0, 3 * kDegree, 10 * kDegree, 25 * kDegree, 40 * kDegree, 50 * kDegree},
                     {0, 2e4, 4e4, 9e4, 3e5, 9e5}};
-  material.shear = {shear, 1, "", {{4.44e-4, 1, {}}, {2.22e-3, 1.25, {}}, {2.22e-2, 1.6, {}}}};
+  material.shear = {};
+  material.shear.curve = shear;
+  material.shear.rates = {{4.44e-4, 1, {}, {}}, {2.22e-3, 1.25, {}, {}}, {2.22e-2, 1.6, {}, {}}};
   return material;
 }
 

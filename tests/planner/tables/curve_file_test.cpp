@@ -89,7 +89,7 @@ TEST(CurveFile, SaysWhatIsWrongAndWhere) {
   const std::string head = "Strain (%),Stress (MPa)\n";
   const auto wrong = [&](const std::string& text) { return error(read(text)); };
   EXPECT_NE(error(read_curve("/there/is/none.csv", Dimension::strain, {})).find("cannot be read"), std::string::npos);
-  EXPECT_NE(wrong(head + "0,0\n0.1,5\n0.05,6\n").find(".csv:4: strain: jumps back from 0.1 % to 0.05 %"),
+  EXPECT_NE(wrong(head + "0,0\n0.1,5\n0.05,6\n").find(".csv:4: strain: goes back from 0.1 % to 0.05 %"),
             std::string::npos);
   EXPECT_NE(wrong(head + "0,0\n0.1,5\n0.1,6\n").find(".csv:4: strain: does not grow"), std::string::npos);
   EXPECT_NE(wrong(head + "0,0\n0.1,5\n0.2,4.9\n").find(".csv:4: stress: falls from 5 MPa to 4.9 MPa"),
@@ -105,7 +105,12 @@ TEST(CurveFile, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(wrong(record(201, 0.8, fails)).find("a curve must not fall; end the table where"), std::string::npos);
   // Two specimens one after another are out of order; mixed row by row they are no curve.
   const std::string one = record(50, 0.5, [](double e) { return 100 * e; });
-  EXPECT_NE(wrong(one + one.substr(one.find('\n') + 1)).find(".csv:52: strain: jumps back"), std::string::npos);
+  EXPECT_NE(wrong(one + one.substr(one.find('\n') + 1)).find(".csv:52: strain: goes back from 0.5 %"), std::string::npos);
+  // A record that goes on while the specimen is unloaded, step by step.
+  std::string unloaded = one;
+  for (int k = 48; k >= 0; --k) unloaded += std::to_string(0.5 * k / 49) + "," + std::to_string(k) + "\n";
+  EXPECT_NE(wrong(unloaded).find(".csv:52: strain: goes back from 0.5 % to 0.4898 %"), std::string::npos)
+      << wrong(unloaded);
   int row = 0;
   EXPECT_NE(wrong(record(400, 0.5, [&](double e) { return ++row % 2 == 0 ? 100 * e : 10 * e; })).find("no curve fits"),
             std::string::npos);
