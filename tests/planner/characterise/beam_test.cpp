@@ -87,12 +87,19 @@ TEST(BendingLawOfProfile, TakesAnotherProgramsLawToItsShape) {
 }
 
 TEST(BendingLawOfProfile, TakesAnotherProgramsShapeToItsLaw) {
-  const BendingLaw law = bending_law_of_profile(other_places(), kOtherLoad);
+  const BendingLaw law = bending_law_of_profile(other_places(), kOtherLoad, 25);
   EXPECT_NEAR(law.strain.back(), 0.39277, 0.01 * 0.39277);
+  double squares = 0;
+  int count = 0;
   for (const OtherPlace& one : kOther) {
-    if (one.moment < 0.05) continue;  // as good as straight
-    EXPECT_NEAR(law(one.moment), one.curvature, 0.05 * one.curvature + 0.02) << one.moment;
+    if (one.moment < 0.03) continue;  // as good as straight
+    const double missed = law(one.moment) / one.curvature - 1;
+    EXPECT_NEAR(missed, 0, 0.12) << one.moment;  // most where the law bends sharply, between its pieces
+    squares += missed * missed;
+    ++count;
   }
+  EXPECT_EQ(count, 37);
+  EXPECT_LT(std::sqrt(squares / count), 0.04);
   const StripAtRest again = strip_at_rest(law, kOtherLength, kOtherLoad);
   EXPECT_NEAR(again.tip(), 0.10002, 0.01 * 0.10002);
 }
