@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "planner/measured/bisect.hpp"
-#include "planner/measured/smooth.hpp"
+#include "planner/tables/smooth.hpp"
 
 namespace drapeplan {
 namespace {

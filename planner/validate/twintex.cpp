@@ -11,7 +11,7 @@
 #include "mapping/error.hpp"
 #include "planner/characterise/shear.hpp"
 #include "planner/characterise/verify.hpp"
-#include "planner/measured/smooth.hpp"
+#include "planner/tables/smooth.hpp"
 #include "planner/report/charts.hpp"
 #include "planner/validate/validate.hpp"
 
