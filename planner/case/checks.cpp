@@ -244,7 +244,8 @@ void check_profiles(const CaseFields& fields, FieldReader& reader) {
         reader.fail(pointer + "/name", "another profile has the same name");
     }
     if (!reader.good(pointer + "/from") || !reader.good(pointer + "/to")) continue;
-    if ((profile.to - profile.from).norm() <= kSlack) reader.fail(pointer, "its ends coincide");
+    if ((profile.to - profile.from).norm() <= kSlack)
+      reader.fail(pointer + "/to", "is the point that the line starts from");
     if (profile.frame != Profile::Frame::ply || !reader.good("/ply")) continue;
     check_on_ply(reader, pointer + "/from", fields.definition.ply, profile.from);
     check_on_ply(reader, pointer + "/to", fields.definition.ply, profile.to);

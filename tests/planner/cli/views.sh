@@ -68,4 +68,4 @@ expect 0 simulate "$source/cases/incline.json" --json --set 'duration=0.01 s' --
 has_files "$work/drape/earlier-1" probes.csv profile_mid.csv report.html
 [ ! -e "$work/drape/profile_mid.csv" ] || fail "a profile of an earlier run is left"
 
-finish 45
+finish 39

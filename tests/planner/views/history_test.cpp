@@ -69,7 +69,7 @@ TEST(History, OfAPausedAndContinuedRunIsThatOfTheWholeInTwoParts) {
   const Model model = model_of(definition, definition.fidelities.at(kReport));
   Recorder whole(definition, model, nullptr), first(definition, model, nullptr), second(definition, model, nullptr);
   play(model, definition, whole);
-  const RunResult half = play(model, definition, first, nullptr, 0.1);
+  const RunResult half = play(model, definition, first, nullptr, 0.1004);  // between two instants
   play(model, definition, second, &half.state);
   std::vector<double> times = first.history().time;
   ASSERT_GE(times.size(), 100u);
@@ -103,7 +103,7 @@ TEST(History, QuotesNamesThatWouldBreakATable) {
   history.time = {0, 1};
   history.probes = {{"a,\"b\"", {0, 0, 0}, {{0, 0, 0}, {0, 0, -0.0015}}, {}}};
   const std::string text = probes_csv(history);
-  EXPECT_EQ(text.substr(0, 35), "time [s],\"a,\"\"b\"\" x [mm]\",\"a,\"\"b\"\" y");
+  EXPECT_EQ(text.substr(0, 36), "time [s],\"a,\"\"b\"\" x [mm]\",\"a,\"\"b\"\" y");
   EXPECT_EQ(text.substr(text.find("\n1,")), "\n1,0,0,-1.5,0,0,-1.5,1.5\n");
 }
 
