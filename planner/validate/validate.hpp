@@ -24,8 +24,8 @@ struct ValidationRow {
   double ours = 0;
   double tolerance = 0;  ///< absolute
   std::string source;    ///< of the reference
-  std::string basis;     ///< what the tolerance is, "1 %"
-  std::string why = {};  ///< the mechanism, where a row is known to differ
+  std::string basis;     ///< what the tolerance is, "1 %"; empty: a figure that was stated
+  std::string why = {};  ///< the mechanism, where a row is known to differ, or why it is not judged
   bool judged = true;
 
   [[nodiscard]] Agreement agreement() const;
