@@ -250,6 +250,27 @@ void place_node(const Mold& mold, int i, int j, int di, int dj, Net& net) {
   net.nodes[size_t(i) + size_t(j) * net.u.size()] = corner.point;
 }
 
+// The angle by which a step has to turn so that a squared shear is least [rad]: the lowest point of a parabola through
+// three, of smaller and smaller steps.
+template <class SquaredShear>
+double least_shear_angle(const SquaredShear& shear_at) {
+  constexpr double kFirstStep = 0.02, kLastStep = 1e-5, kFiner = 0.1;  // [rad]
+  constexpr double kLongestShift = 10;                                 // steps
+  double angle = 0;
+  for (double step = kFirstStep; step > kLastStep; step *= kFiner) {
+    const double before = shear_at(angle - step), here = shear_at(angle), after = shear_at(angle + step);
+    const double bend = before - 2 * here + after;
+    const double shift = bend > 0 ? 0.5 * (before - after) / bend : 0;
+    angle += step * std::clamp(shift, -kLongestShift, kLongestShift);
+  }
+  return angle;
+}
+
+// Squared shear of the cell between the nodes (i, j) and (i + a, j + b).
+double squared_shear(const Net& net, int i, int j, int a, int b) {
+  return std::pow(middle_shear(net.node(i, j), net.node(i + a, j), net.node(i, j + b), net.node(i + a, j + b)), 2);
+}
+
 // Lays a half line whose cells on one side are sheared least, and with it the row on that side.
 class LeastShearLine {
  public:
@@ -257,33 +278,18 @@ class LeastShearLine {
   LeastShearLine(const Mold& mold, const HalfLine& line, int a, int b, Net& net)
       : mold_(mold), line_(line), a_(a), b_(b), net_(net) {}
 
-  // Lays the node after (i, j), whose predecessor and whose neighbour in the row are there. The angle by which
-  // the line turns is the lowest point of a parabola through three, of smaller and smaller steps.
+  // Lays the node after (i, j), whose predecessor and whose neighbour in the row are there.
   void lay_after(int i, int j) {
     const Eigen::Vector3d from = net_.node(i - line_.di, j - line_.dj);
     const Eigen::Vector2d heading = (net_.node(i, j) - from).head<2>().normalized();
-    double angle = 0;
-    for (double step = kFirstStep; step > kLastStep; step *= kFiner) {
-      const double before = shear_at(i, j, heading, angle - step), here = shear_at(i, j, heading, angle),
-                   after = shear_at(i, j, heading, angle + step);
-      const double bend = before - 2 * here + after;
-      const double shift = bend > 0 ? 0.5 * (before - after) / bend : 0;
-      angle += step * std::clamp(shift, -kLongestShift, kLongestShift);
-    }
-    place(i, j, heading, angle);
+    place(i, j, heading, least_shear_angle([&](double angle) { return shear_at(i, j, heading, angle); }));
   }
 
  private:
-  static constexpr double kFirstStep = 0.02, kLastStep = 1e-5, kFiner = 0.1;  // [rad]
-  static constexpr double kLongestShift = 10;                                  // steps
-
   // Squared shear of the cell beside the step, which is laid for it.
   double shear_at(int i, int j, const Eigen::Vector2d& heading, double angle) {
     place(i, j, heading, angle);
-    const int di = line_.di, dj = line_.dj;
-    return std::pow(middle_shear(net_.node(i, j), net_.node(i + di, j + dj), net_.node(i + a_, j + b_),
-                                 net_.node(i + di + a_, j + dj + b_)),
-                    2);
+    return squared_shear(net_, i, j, line_.di + a_, line_.dj + b_);
   }
 
   void place(int i, int j, const Eigen::Vector2d& heading, double angle) {
@@ -301,13 +307,20 @@ class LeastShearLine {
 };
 
 // Lays the lines through the start where they shear least: the first cell is that of the first steps forwards
-// (or backwards, where the start lies at the ply's edge), the lines go on from it in all four directions.
+// (or backwards, where the start lies at the ply's edge), the weft turned so that it is not sheared; the lines go on
+// from it in all four directions.
 void lay_least_shear(const Mold& mold, const std::array<HalfLine, 4>& lines, int i0, int j0, Net& net) {
   const size_t warp = lines[0].count > 0 ? 0 : 2, weft = lines[1].count > 0 ? 1 : 3;
   const int a = lines[warp].di, b = lines[weft].dj;
   lay_geodesic(mold, lines[warp], 1, i0, j0, net);
-  lay_geodesic(mold, lines[weft], 1, i0, j0, net);
-  place_node(mold, i0 + a, j0 + b, a, b, net);
+  const auto first_cell = [&](double angle) {
+    HalfLine turned = lines[weft];
+    turned.direction = Eigen::Rotation2Dd(angle) * turned.direction;
+    lay_geodesic(mold, turned, 1, i0, j0, net);
+    place_node(mold, i0 + a, j0 + b, a, b, net);
+    return squared_shear(net, i0, j0, a, b);
+  };
+  first_cell(least_shear_angle(first_cell));
   for (size_t k = 0; k < lines.size(); ++k) {
     const HalfLine& line = lines[k];
     LeastShearLine least(mold, line, k % 2 == 0 ? 0 : a, k % 2 == 0 ? b : 0, net);

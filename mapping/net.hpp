@@ -15,7 +15,7 @@ enum class Generators {
   axes,           ///< geodesics whose directions at the start project to the warp and weft directions
   mid_sides,      ///< geodesics from the start point to the four mid-sides of the mold's extent (the text of
                   ///< [Krogh])
-  /// As `perpendicular` at the start; each further step goes where the cell beside it is sheared least (C. Krogh
+  /// The warp starts as with `perpendicular`; each other step goes where its cell is sheared least (C. Krogh
   /// and others, "A simple MATLAB draping code for fiber-reinforced composites", 2021).
   minimum_shear,
   steered,  ///< along lines that are given on the mold, as a machine lays fibres

@@ -30,11 +30,11 @@ BendingLaw softening_law() {
 }
 
 /// Its law in, its shape out.
-Compared compare_softening_strip() {
+Findings compare_softening_strip() {
   const StripAtRest strip = strip_at_rest(softening_law(), softening_strip::kLength, softening_strip::kLoad);
   const Place &clamp = kPlaces.front(), &tip = kPlaces.back();
   const Eigen::Vector2d ours = strip.places.back();
-  Compared result{
+  Findings result{
       {within_share("softening strip, from its law: tip, along", "m", tip.x, ours.x(), kShare, kBendstiff),
        within_share("softening strip, from its law: tip, down", "m", -tip.y, -ours.y(), kShare, kBendstiff),
        within_share("softening strip, from its law: moment at the clamp", "N", clamp.moment,
@@ -52,13 +52,13 @@ Compared compare_softening_strip() {
 }
 
 /// Its shape in, its law out.
-Compared compare_softening_shape() {
+Findings compare_softening_shape() {
   constexpr double kCurvatureShare = 0.05;
   std::vector<Eigen::Vector2d> places;
   for (const Place& place : kPlaces) places.emplace_back(place.x, place.y);
   const BendingLaw law = bending_law_of_profile(places, softening_strip::kLoad);
   const Place &clamp = kPlaces.front(), &tip = kPlaces.back();
-  Compared result{{within_share("softening strip, from its shape: moment at the clamp", "N", clamp.moment,
+  Findings result{{within_share("softening strip, from its shape: moment at the clamp", "N", clamp.moment,
                                 law.strain.back(), kShare, kBendstiff)}};
   // Places at which the stiffness differs by orders of magnitude, from the clamp to the straight end.
   for (const size_t k : {size_t(0), size_t(4), size_t(8), size_t(15), size_t(25)})
@@ -83,7 +83,7 @@ Compared compare_softening_shape() {
 }
 
 /// Fibres with two moduli: the section's law, elements, and a heavy strip of them.
-Compared compare_two_moduli(double ratio) {
+Findings compare_two_moduli(double ratio) {
   constexpr double kModulus = 10e9, kThickness = 0.3e-3, kCurvature = 5;  // [Pa], [m], [1/m]
   constexpr double kBeta = 4, kDrop = 0.42516;                            // heavy elastica
   constexpr int kPoints = 5, kElements = 16;

@@ -29,7 +29,7 @@ std::vector<Group> groups_of(const std::vector<ComparisonResult>& results) {
     auto group =
         std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.name == result.group; });
     if (group == groups.end()) group = groups.insert(groups.end(), {result.group, {}});
-    group->rows.insert(group->rows.end(), result.compared.rows.begin(), result.compared.rows.end());
+    group->rows.insert(group->rows.end(), result.findings.rows.begin(), result.findings.rows.end());
   }
   return groups;
 }
@@ -59,9 +59,17 @@ std::string tolerance_of(const ValidationRow& row) {
   return row.judged ? fmt::format("{:.2g}", row.tolerance) : "-";
 }
 
-/// Why a row differs.
+/// With what it is.
+std::string explained_tolerance(const ValidationRow& row) {
+  return row.judged && !row.basis.empty() ? fmt::format("{} ({})", tolerance_of(row), row.basis)
+                                          : tolerance_of(row);
+}
+
+/// Why a row does not agree; empty if nothing is to be said.
 std::string reason_of(const ValidationRow& row) {
-  return row.why.empty() ? "no reason is known: something is wrong" : row.why;
+  if (row.agreement() == Agreement::differs && row.why.empty())
+    return "no reason is known: something is wrong";
+  return row.agreement() == Agreement::agrees ? "" : row.why;
 }
 
 std::string plain_cell(const std::string& text) {
@@ -86,7 +94,7 @@ json validation_json(const std::vector<ComparisonResult>& results) {
                       {"tolerance", row.judged ? finite(row.tolerance) : json(nullptr)},
                       {"tolerance_is", row.basis},
                       {"verdict", agreement_name(agreement)},
-                      {"why", agreement == Agreement::differs ? reason_of(row) : row.why},
+                      {"why", reason_of(row)},
                       {"source", row.source}});
       if (agreement == Agreement::differs) failures.push_back(fmt::format("{}: {}", group.name, row.what));
     }
@@ -107,7 +115,7 @@ std::string validation_text(const std::vector<ComparisonResult>& results) {
   size_t widest = 0;
   for (const Group& group : groups)
     for (const ValidationRow& row : group.rows) widest = std::max(widest, row.what.size());
-  std::string text;
+  std::string text, last_why;  // the same reason stands once
   for (const Group& group : groups) {
     text += fmt::format("{}{}\n{:<8} {:<{}} {:>9} {:>9} {:>8} {:<5} {}\n", text.empty() ? "" : "\n",
                         group.name, "verdict", "", widest, "reference", "ours", "+-", "unit", "source");
@@ -115,7 +123,9 @@ std::string validation_text(const std::vector<ComparisonResult>& results) {
       text += fmt::format("{:<8} {:<{}} {:>9} {:>9} {:>8} {:<5} {}\n", agreement_name(row.agreement()),
                           row.what, widest, number(row.reference), number(row.ours), tolerance_of(row),
                           row.unit, row.source);
-      if (row.agreement() == Agreement::differs) text += fmt::format("{:<8} why: {}\n", "", reason_of(row));
+      const std::string why = reason_of(row);
+      if (!why.empty() && why != last_why) text += fmt::format("{:<8} why: {}\n", "", why);
+      last_why = why;
     }
   }
   return text + "\n" + summary_of(groups) + "\n";
@@ -132,13 +142,12 @@ std::string validation_markdown(const std::vector<ComparisonResult>& results) {
         group.name);
     for (const ValidationRow& row : group.rows) {
       const Agreement agreement = row.agreement();
+      const std::string why = reason_of(row), name = agreement_name(agreement);
+      const std::string verdict = agreement == Agreement::differs ? "**" + name + "**" : name;
       const std::string unit = row.unit.empty() ? "" : " " + row.unit;
       text += fmt::format("| {} | {}{} | {} | {} | {} | {} |\n", plain_cell(row.what), number(row.reference),
-                          unit, number(row.ours), row.judged ? tolerance_of(row) + ": " + row.basis : "-",
-                          agreement == Agreement::differs
-                              ? fmt::format("**differs**: {}", plain_cell(reason_of(row)))
-                              : std::string(agreement_name(agreement)),
-                          plain_cell(row.source));
+                          unit, number(row.ours), explained_tolerance(row),
+                          verdict + (why.empty() ? "" : ": " + plain_cell(why)), plain_cell(row.source));
     }
   }
   return text;
@@ -158,18 +167,18 @@ std::string validation_page(const std::vector<ComparisonResult>& results) {
                       .rows = {}};
     for (const ValidationRow& row : group.rows) {
       const Agreement agreement = row.agreement();
-      const bool differs = agreement == Agreement::differs;
-      table.rows.push_back({.cells = {row.what, number(row.reference), number(row.ours),
-                                      row.judged ? fmt::format("{} ({})", tolerance_of(row), row.basis) : "-",
-                                      row.unit, agreement_name(agreement), row.source},
-                            .failed = differs,
-                            .beside = agreement == Agreement::context,
-                            .note = differs ? "Why: " + reason_of(row) : ""});
+      const std::string why = reason_of(row);
+      table.rows.push_back(
+          {.cells = {row.what, number(row.reference), number(row.ours), explained_tolerance(row), row.unit,
+                     agreement_name(agreement), row.source},
+           .failed = agreement == Agreement::differs,
+           .beside = agreement == Agreement::context,
+           .note = why.empty() ? "" : "Why: " + why});
     }
     page.tables.push_back(std::move(table));
   }
   for (const ComparisonResult& result : results)
-    page.figures.insert(page.figures.end(), result.compared.figures.begin(), result.compared.figures.end());
+    page.figures.insert(page.figures.end(), result.findings.figures.begin(), result.findings.figures.end());
   page.notes = {"A row is context where nobody says how exact the reference is: it is shown, not judged."};
   page.files = {{"result.json", "all figures"}, {"validate.md", "the tables as text"}};
   return html_report(page);

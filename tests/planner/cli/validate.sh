@@ -21,4 +21,4 @@ grep -q 'earlier-1' stderr || fail "it does not say that earlier results were se
 refuse 'no comparison' validate --only 'no such comparison'
 refuse '--set and --seed' validate --set fem.rates=false
 expect 2 stress --only 'size: two elements' --out found
-finish 16
+finish 13
