@@ -138,7 +138,8 @@ std::optional<Snapshot> unpressed_snapshot(const Model& model, const State& stat
 class Observer {
  public:
   /// @param see  may be null: nothing is looked at.
-  Observer(int instants, const std::function<void(const Snapshot&)>& see, const Clock& clock, const State& first)
+  Observer(int instants, const std::function<void(const Snapshot&)>& see, const Clock& clock,
+           const State& first)
       : count_(see ? instants : 0), spans_(std::max(count_ - 1, 1)), see_(see), clock_(clock) {
     next_ = first.step == 0 ? 0 : clock.passed(first.time, spans_) + 1;
   }

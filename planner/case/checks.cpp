@@ -232,7 +232,9 @@ void check_probes(const CaseFields& fields, FieldReader& reader) {
 
 /// Their names become parts of the names of files.
 void check_profiles(const CaseFields& fields, FieldReader& reader) {
-  const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_'; };
+  const auto plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_';
+  };
   std::set<std::string> names;
   for (size_t k = 0; k < fields.definition.profiles.size(); ++k) {
     const Profile& profile = fields.definition.profiles[k];

@@ -254,7 +254,8 @@ void visit_views(FieldVisitor& v, Case& c) {
   v.list(probes);
   ObjectList profiles = object_list(
       "profiles", "Lines along which the ply is shown beside the mold", c.profiles, [&v](Profile& profile) {
-        v.field({"name", &profile.name, "Name of its file: letters, digits, - and _", Dimension::none, {}, true});
+        v.field(
+            {"name", &profile.name, "Name of its file: letters, digits, - and _", Dimension::none, {}, true});
         v.field({"frame", choice(profile.frame, {"world", "ply"}),
                  "Ends in the world (x, y), where a vertical plane cuts the ply; or in the ply (u, v)"});
         v.field({"from", &profile.from, "One end", Dimension::length, {}, true});
@@ -265,9 +266,10 @@ void visit_views(FieldVisitor& v, Case& c) {
   ObjectList instants = object_list(
       "instants", "Times at which profiles and shear are shown, beside the end of the run", c.instants,
       [&v](Instant& instant) {
-        v.field({"name", &instant.name, "What it is called in tables and pictures", Dimension::none, {}, true});
-        v.field({"time", &instant.time, "On the schedule's clock; later than the end: not shown", Dimension::time,
-                 from(0), true});
+        v.field(
+            {"name", &instant.name, "What it is called in tables and pictures", Dimension::none, {}, true});
+        v.field({"time", &instant.time, "On the schedule's clock; later than the end: not shown",
+                 Dimension::time, from(0), true});
       });
   instants.needs = {"material"};
   v.list(instants);

@@ -203,18 +203,20 @@ void write_drape(const std::filesystem::path& folder, const DrapeProblem& proble
                  const Schedule& schedule, const Recorder& recorder, const SimulateOptions& options) {
   const Case& definition = problem.definition();
   const Model& model = problem.model(options.fidelity);
-  write_frames(folder, "ply", model.scene().mesh, drape.frames, &*definition.mold, definition.material.thickness);
+  write_frames(folder, "ply", model.scene().mesh, drape.frames, &*definition.mold,
+               definition.material.thickness);
   write_mold_vtu(folder / "mold.vtu", *definition.mold);
   const std::string picture = drape_picture({drape_panel(problem, drape, options.fidelity, options.schedule)},
                                             definition.mold->extent());
   write_text(folder / "drape.svg", picture);
   write_schedule(folder / "schedule.json", schedule, *definition.grippers);
   write_schedule_csv(folder / "schedule.csv", schedule, *definition.grippers);
-  DrapePage page{.rows = reference_rows(definition),
-                 .figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", picture}},
-                 .files = {{"schedule.json", "the sequence, knots"},
-                           {"schedule.csv", "the same, sampled for a robot controller"},
-                           {"mold.vtu", "the mold, for ParaView"}}};
+  DrapePage page{
+      .rows = reference_rows(definition),
+      .figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", picture}},
+      .files = {{"schedule.json", "the sequence, knots"},
+                {"schedule.csv", "the same, sampled for a robot controller"},
+                {"mold.vtu", "the mold, for ParaView"}}};
   const std::vector<ReportRow> own = drape_rows(options.schedule, drape);
   page.rows.insert(page.rows.end(), own.begin(), own.end());
   write_run(folder, definition, model, recorder, drape.run, std::move(page));

@@ -54,12 +54,16 @@ TEST(History, OfAPulledStripHasTheGripsWayAndTheSameForceAtBothEnds) {
   EXPECT_GE(head.force.back().y(), 5);
   EXPECT_LE((head.force.back() + foot.force.back()).norm(), 0.02 * head.force.back().norm());
   // The middle goes half the way.
-  EXPECT_LE((history.probes.at(0).place.back() - history.probes[0].start - Eigen::Vector3d(0, 0.02, 0)).norm(), 5e-4);
+  EXPECT_LE(
+      (history.probes.at(0).place.back() - history.probes[0].start - Eigen::Vector3d(0, 0.02, 0)).norm(),
+      5e-4);
   EXPECT_TRUE(history.probes[0].gap.empty());
-  EXPECT_EQ(first_line(grips_csv(history)),
-            "time [s],simulated time [s],foot displacement x [mm],foot displacement y [mm],foot displacement z [mm],"
-            "foot force x [N],foot force y [N],foot force z [N],head displacement x [mm],head displacement y [mm],"
-            "head displacement z [mm],head force x [N],head force y [N],head force z [N]");
+  EXPECT_EQ(
+      first_line(grips_csv(history)),
+      "time [s],simulated time [s],foot displacement x [mm],foot displacement y [mm],foot displacement z "
+      "[mm],"
+      "foot force x [N],foot force y [N],foot force z [N],head displacement x [mm],head displacement y [mm],"
+      "head displacement z [mm],head force x [N],head force y [N],head force z [N]");
   EXPECT_EQ(probes_json(history)["head"]["force"][1], head.force.back().y());
 }
 
@@ -67,7 +71,8 @@ TEST(History, OfAPausedAndContinuedRunIsThatOfTheWholeInTwoParts) {
   Case definition = shipped("cantilever-150.json", {"fem.mesh_size=12.5 mm", "duration=0.2 s"});
   definition.instants = {{"early", 0.05}, {"late", 0.15}, {"never", 1}};
   const Model model = model_of(definition, definition.fidelities.at(kReport));
-  Recorder whole(definition, model, nullptr), first(definition, model, nullptr), second(definition, model, nullptr);
+  Recorder whole(definition, model, nullptr), first(definition, model, nullptr),
+      second(definition, model, nullptr);
   play(model, definition, whole);
   const RunResult half = play(model, definition, first, nullptr, 0.1004);  // between two instants
   play(model, definition, second, &half.state);
