@@ -77,7 +77,9 @@ TEST_P(RoundTrip, FindsTheTruth) {
   ASSERT_TRUE(found.compression);
   constexpr double kStrain = 0.003;
   const auto miss = [&](double rate) {
-    return again.compression(kStrain, rate, again.rate_floor) / fabric.compression(kStrain, rate, fabric.rate_floor) - 1;
+    return again.compression(kStrain, rate, again.rate_floor) /
+               fabric.compression(kStrain, rate, fabric.rate_floor) -
+           1;
   };
   EXPECT_NEAR(miss(0), 0, 0.06);
   // A quartic bends too little at the clamp: rates are read too low, so that curves at a rate are too stiff.
