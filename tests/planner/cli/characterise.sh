@@ -56,7 +56,7 @@ broken 's/"scale"/"threshold": 0.95, "scale"/' tests.json 'strip_01.pgm: shows n
 broken 's/"scale"/"clamp_right": true, "scale"/' tests.json 'is the clamp on the other side'
 broken 's/strip_01.pgm/strip_99.pgm/' tests.json 'strip_99.pgm: cannot be read as an image'
 broken 's/"strip_01.pgm"/"tests.json"/' tests.json 'tests.json: cannot be read as an image'
-broken 's/"time": "0.4 s"/"time": "0.8 s"/' tests.json '/cantilever/0/frames/1/time: times must increase'
+broken 's/"time": "0.4 s"/"time": "0.8 s"/' tests.json 's": times must increase'
 refuse 'none.json: cannot be read' characterise none.json
 refuse 'is not tested' characterise data/tests.json --set assumed=null
 finish 42
