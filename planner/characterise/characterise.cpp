@@ -99,8 +99,8 @@ CurveFields compression_fields(const CompressionLaw& law, const StripHistory& st
     fields.rates.push_back({law.rates[k], law.factors[k], {}, {}});
   fields.source = fmt::format(
       "Inverse bending model: the master curve has the slope of tension up to 0.1 % and 0.5 GPa beyond; its "
-      "factors are those with which a strip of {:g} mm, simulated with {} section points, drops as measured, from {:.1f} mm after {:g} s "
-      "to {:.1f} mm at rest. E_static {:.3g} MPa, omega_1 {:.3g} 1/s, alpha {:.3g} 1/s",
+      "factors are those with which a strip of {:g} mm, simulated with {} section points, drops as measured, "
+      "from {:.1f} mm after {:g} s to {:.1f} mm at rest. E_static {:.3g} MPa, omega_1 {:.3g} 1/s, alpha {:.3g} 1/s",
       1e3 * strip.tips.length, tests.section_points, 1e3 * law.first_tip, law.times.back(), 1e3 * law.static_tip,
       1e-6 * 12 * law.stiffness / std::pow(tests.thickness, 3), law.frequency, law.alpha);
   return fields;

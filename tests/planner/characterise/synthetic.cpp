@@ -19,7 +19,7 @@ using nlohmann::json;
 constexpr double kTensionWidth = 0.025, kTensionHeight = 0.150, kLargestForce = 500;
 constexpr double kBiasWidth = 0.120, kBiasHeight = 0.270, kBiasWay = 0.050;
 constexpr int kRows = 500;
-constexpr double kStripWidth = 0.025, kLongStrip = 0.150, kShortStrip = 0.070, kGravity = 9.81;
+constexpr double kStripWidth = 0.025, kLongStrip = 0.150, kOtherStrips[] = {0.100, 0.070}, kGravity = 9.81;
 constexpr double kFirstFrame = 0.4, kHangs = 60;  // [s]: until no further deformation is visible
 constexpr double kPixel = 2e-4;
 constexpr int kFrames = 25;
@@ -84,11 +84,12 @@ class Bench {
     return frames;
   }
 
-  /// The tip of the short one, as a table.
-  std::string tip() {
-    Table table{"strip_short.csv", std::ofstream(folder_ / "strip_short.csv")};
+  /// The tip of another strip, as a table.
+  std::string tip(double length) {
+    Table table{fmt::format("strip_{:g}.csv", 1e3 * length), {}};
+    table.out.open(folder_ / table.name);
     table.out << "Synthetic data: computed, not measured\nTime (s);Deflection (mm)\n";
-    for (const CreepingStrip& strip : creeping_strip(fabric_, kShortStrip, kGravity, times(4 * kFrames)))
+    for (const CreepingStrip& strip : creeping_strip(fabric_, length, kGravity, times(4 * kFrames)))
       table.out << fmt::format("{:.5f};{:.4f}\n", strip.time, 1e3 * (strip.tip() + spoilt_.tip_noise * normal()));
     return table.name;
   }
@@ -164,11 +165,14 @@ void write_synthetic_tests(const std::filesystem::path& folder, const MaterialFi
   const auto cantilever = [](double length) -> json {
     return {{"length", fmt::format("{:g} mm", 1e3 * length)}, {"width", fmt::format("{:g} mm", 1e3 * kStripWidth)}};
   };
-  json first = cantilever(kLongStrip), second = cantilever(kShortStrip);
+  json first = cantilever(kLongStrip);
   first["scale"] = fmt::format("{:g} mm", 1e3 * kPixel);
   first["frames"] = bench.pictures();
-  second["file"] = bench.tip();
-  tests["cantilever"] = {first, second};
+  tests["cantilever"] = json::array({first});
+  for (const double length : kOtherStrips) {
+    tests["cantilever"].push_back(cantilever(length));
+    tests["cantilever"].back()["file"] = bench.tip(length);
+  }
   std::ofstream(folder / "tests.json") << tests.dump(2) << '\n';
 }
 

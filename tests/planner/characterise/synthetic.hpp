@@ -22,8 +22,8 @@ struct Spoilt {
 
 /// Writes tests.json and its tables: tension at 0.5 and 2 mm/min (25 x 150 mm, five specimens each, three of
 /// steel), bias extension at 2, 10 and 100 mm/min (120 x 270 mm, three specimens each), and cantilevers over a
-/// minute: 25 pictures of one of 150 mm, a table of the tip of one of 70 mm (see synthetic_strip.hpp). What is not
-/// tested is assumed to be as it is. Forces of bias extension are those of the balance of power, with half-sheared
+/// minute: 25 pictures of one of 150 mm, tables of the tips of those of 100 and 70 mm (see synthetic_strip.hpp). What is
+/// not tested is assumed to be as it is. Forces of bias extension are those of the balance of power, with half-sheared
 /// zones at half of the rate.
 /// @param truth  with the conjugate measure, and rates of compression.
 void write_synthetic_tests(const std::filesystem::path& folder, const MaterialFields& truth,
