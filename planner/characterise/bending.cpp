@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
-#include "fem/run/monitor.hpp"
 #include "fem/run/simulate.hpp"
 #include "mapping/error.hpp"
 #include "planner/base/parallel.hpp"
+#include "planner/case/fields.hpp"
 #include "planner/characterise/beam.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/measured/strip_shape.hpp"
@@ -23,46 +24,47 @@ constexpr double kAtRest = 1e-15;    // [1/s], rate of the last one
 constexpr int kCurves = 6;
 
 /// The drop at rest of a strip with a compression curve, simulated without rates.
-double simulated_drop(Fabric fabric, const Curve& compression, double length, double width, double gravity) {
+double simulated_drop(Fabric fabric, const Curve& compression, double length, double width, double gravity,
+                      int section_points) {
   fabric.compression = compression;
-  const double load = gravity * fabric.areal_density;
-  const StripAtRest guess =
-      strip_at_rest(section_bending(fabric.tension.slowest(), compression, fabric.thickness), length, load);
-  const double frequency =
-      strip_frequency(stiffness_of(guess.tip(), length, load), fabric.areal_density, length);
-  Case strip;
-  strip.name = "strip";
-  strip.material = fabric;
-  strip.ply.width = length;
-  strip.ply.height = width;
-  strip.gravity = gravity;
-  strip.damping = 2 * frequency;
-  strip.clamped = {Edge::left};
+  Case strip = falling_strip(fabric, length, width, gravity, section_points);
   strip.rest = RestCriterion{};
-  constexpr double kPeriods = 30;  // far more than a critically damped strip needs
-  strip.duration = kPeriods * 2 * M_PI / frequency;
-  FemOptions fem;
-  constexpr double kCellsAcross = 4;  // as in cases/cantilever-150.json
-  fem.mesh_size = width / kCellsAcross;
+  FemOptions& fem = strip.fidelities.at(kReport);
   fem.rates = false;
-  strip.fidelities[kReport] = fem;
+  constexpr double kPeriods = 30;  // far more than a critically damped strip needs
+  strip.duration = kPeriods * 2 * std::numbers::pi / (0.5 * *strip.damping);
   const Model model = model_of(strip, fem);
   RunRequest request;
   request.duration = strip.duration;
   const RunResult run = simulate(model, request);
   if (run.summary.status != RunStatus::done)
     throw NotFinished("a strip of the bending model: " + run.summary.message);
-  const auto& rest = model.scene().mesh.rest;
-  size_t tip = 0;
-  for (size_t n = 1; n < rest.size(); ++n) {
-    const auto from_tip = [&](size_t k) { return (rest[k] - Eigen::Vector2d(0.5 * length, 0)).norm(); };
-    if (from_tip(n) < from_tip(tip)) tip = n;
-  }
-  const Snapshot start = take_snapshot(model, model.flat_state(0), RigDrive{});
-  return start.position[tip].z() - run.final.position[tip].z();
+  return strip.start_height - run.final.position[nearest_node(model, {0.5 * length, 0})].z();
 }
 
 }  // namespace
+
+Case falling_strip(const Fabric& fabric, double length, double width, double gravity, int section_points) {
+  const double load = gravity * fabric.areal_density;
+  const BendingLaw law =
+      section_bending(fabric.tension.slowest(), fabric.compression.slowest(), fabric.thickness);
+  const double drop = strip_at_rest(law, length, load).tip();
+  Case strip;
+  strip.name = "strip";
+  strip.material = fabric;
+  strip.ply.width = length;
+  strip.ply.height = width;
+  strip.gravity = gravity;
+  strip.damping = 2 * strip_frequency(stiffness_of(drop, length, load), fabric.areal_density, length);
+  strip.clamped = {Edge::left};
+  FemOptions fem;
+  constexpr double kCellsAcross = 4;  // as in cases/cantilever-150.json
+  fem.mesh_size = width / kCellsAcross;
+  fem.section_points = section_points;
+  fem.fibre_mass_scaling = 4;  // nothing stretches: drops change by less than 0.01 mm, and runs take a quarter
+  strip.fidelities[kReport] = fem;
+  return strip;
+}
 
 Curve master_compression(const Curve& tension) {
   constexpr double kBreak = 0.001, kEnd = 0.011, kSlopeBeyond = 5e8;  // [-], [-], [Pa]
@@ -82,7 +84,7 @@ double BendingModel::scale_of(double drop) const {
 }
 
 BendingModel bending_model(Fabric fabric, const Curve& master, double length, double width, double gravity,
-                           int threads) {
+                           int section_points, int threads) {
   BendingModel model;
   for (int k = 0; k < kStrips; ++k)
     model.scale.push_back(kSmallestScale *
@@ -94,7 +96,7 @@ BendingModel bending_model(Fabric fabric, const Curve& master, double length, do
       kStrips,
       [&](int k) {
         model.tip[size_t(k)] =
-            simulated_drop(fabric, scaled(master, model.scale[size_t(k)]), length, width, gravity);
+            simulated_drop(fabric, scaled(master, model.scale[size_t(k)]), length, width, gravity, section_points);
       },
       threads);
   for (int k = 1; k < kStrips; ++k) {
@@ -104,45 +106,40 @@ BendingModel bending_model(Fabric fabric, const Curve& master, double length, do
   return model;
 }
 
-CompressionLaw compression_law(const TipHistory& history, const Fabric& fabric, double gravity, int threads) {
+CompressionLaw compression_law(const TipHistory& history, const Fabric& fabric, double gravity, int section_points,
+                               int threads) {
   if (history.time.empty() || history.time.front() > kFirstTime)
     throw NotFinished(fmt::format("the cantilever's history starts after {} s", kFirstTime));
   CompressionLaw law;
   law.master = master_compression(fabric.tension.slowest());
-  law.model = bending_model(fabric, law.master, history.length, history.width, gravity, threads);
+  law.model = bending_model(fabric, law.master, history.length, history.width, gravity, section_points,
+                            threads);
   std::vector<double> time, strain;
   for (size_t k = 0; k < history.time.size(); ++k) {
     if (history.time[k] > 0 && history.root_strain[k] > 0)
       time.push_back(history.time[k]), strain.push_back(history.root_strain[k]);
   }
   const DoublePowerLaw strains = fit_double_power(time, strain);
-  law.static_tip = *std::max_element(history.tip.begin(), history.tip.end());
   const std::vector<double> tips = not_decreasing(history.tip, std::vector<double>(history.tip.size(), 1));
-  // Drops over time, straight between the measured instants.
-  const auto drop_at = [&](double t) {
-    const auto above = std::upper_bound(history.time.begin() + 1, history.time.end() - 1, t);
-    const auto k = size_t(above - history.time.begin());
-    const double share = (t - history.time[k - 1]) / (history.time[k] - history.time[k - 1]);
-    return tips[k - 1] + share * (tips[k] - tips[k - 1]);
-  };
-  const auto time_at = [&](double drop) {
-    size_t k = 1;
-    while (k + 1 < tips.size() && tips[k] < drop) ++k;
-    const double rise = tips[k] - tips[k - 1];
-    const double share = rise > 0 ? std::clamp((drop - tips[k - 1]) / rise, 0.0, 1.0) : 0;
-    return history.time[k - 1] + share * (history.time[k] - history.time[k - 1]);
-  };
-  law.first_tip = drop_at(kFirstTime);
+  law.static_tip = tips.back();
+  law.first_tip = value_between(history.time, tips, kFirstTime);
   const double slowest = law.model.scale_of(law.static_tip), fastest = law.model.scale_of(law.first_tip);
   std::vector<double> logarithms;
   for (const double scale : law.model.scale) logarithms.push_back(std::log(scale));
   const MonotoneCubic drop_of(logarithms, law.model.tip);
   for (int k = 0; k < kCurves; ++k) {
     const double factor = slowest + (fastest - slowest) * k / (kCurves - 1);
-    const double at = k == 0 ? history.time.back() : k + 1 == kCurves ? kFirstTime : time_at(drop_of(std::log(factor)));
+    const double at = k == 0             ? history.time.back()
+                      : k + 1 == kCurves ? kFirstTime
+                                         : value_between(tips, history.time, drop_of(std::log(factor)));
     law.factors.push_back(factor);
     law.times.push_back(at);
     law.rates.push_back(k == 0 ? kAtRest : strains.rate(at));
+    if (k > 0 && !(law.rates.back() > *(law.rates.end() - 2)))
+      throw NotFinished(fmt::format(
+          "the cantilever's strain at the clamp does not grow more slowly the longer it hangs: {:.2g} 1/s after "
+          "{:.3g} s; its pictures are too coarse, or too few",
+          law.rates.back(), at));
   }
   const double load = gravity * fabric.areal_density;
   law.stiffness = stiffness_of(law.static_tip, history.length, load);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "planner/case/fields.hpp"
+#include "planner/case/case.hpp"
 #include "planner/measured/smooth.hpp"
 
 namespace drapeplan {
@@ -16,6 +16,12 @@ struct TipHistory {
   std::vector<double> time, tip;    ///< [s], drop of the tip [m]
   std::vector<double> root_strain;  ///< outside, at 0.1 % of the length, > 0 [-]
 };
+
+/// A strip that is let go, clamped on its left: a case whose fidelity "report" has cells of a quarter of its width.
+/// Its weight is damped as [Krogh] damps a strip (critically), by the drop at rest that a strip of this fabric has.
+/// @param length, width  free length and width [m].  @param gravity  [m/s^2].  @param section_points  of the fidelity.
+/// @throws std::invalid_argument for a strip so soft that it hangs down straight.
+Case falling_strip(const Fabric& fabric, double length, double width, double gravity, int section_points);
 
 /// The compression curve that is scaled: the slope of tension up to 0.1 % of strain, beyond it 0.5 GPa (the
 /// break comes from tows that buckle).
@@ -30,10 +36,11 @@ struct BendingModel {
 };
 
 /// Simulates twelve strips with scales from 0.02 to 10 side by side.
-/// @param fabric  with tension; its compression is replaced.  @param gravity  [m/s^2].
+/// @param fabric  with tension; its compression is replaced.  @param gravity  [m/s^2].  @param section_points  of the
+/// simulations: a curve that breaks is seen at few points only, which makes strips softer or stiffer than they are.
 /// @throws NotFinished if one of them does not come to rest.
 BendingModel bending_model(Fabric fabric, const Curve& master, double length, double width, double gravity,
-                           int threads);
+                           int section_points, int threads);
 
 struct CompressionLaw {
   Curve master;
@@ -53,6 +60,7 @@ struct CompressionLaw {
 /// which the strip had the drop that belongs to the factor. Nothing is extrapolated.
 /// @param history  that starts at 0.4 s or before; its largest drop is taken to be that at rest.
 /// @throws NotFinished if the history does not span this.
-CompressionLaw compression_law(const TipHistory& history, const Fabric& fabric, double gravity, int threads);
+CompressionLaw compression_law(const TipHistory& history, const Fabric& fabric, double gravity, int section_points,
+                               int threads);
 
 }  // namespace drapeplan

@@ -65,6 +65,7 @@ StripHistory history_of(const CantileverTest& test, const Tests& tests) {
   StripHistory history;
   history.tips.length = test.length;
   history.tips.width = test.width;
+  history.file = test.file.empty() ? test.frames.back().file : test.file;
   for (const StripFrame& frame : test.frames) {
     const StripShape shape = strip_shape(frame.line, frame.time);
     history.shapes.push_back(shape);
@@ -86,16 +87,16 @@ StripHistory history_of(const CantileverTest& test, const Tests& tests) {
   return history;
 }
 
-CurveFields compression_fields(const CompressionLaw& law, const StripHistory& strip, double thickness) {
+CurveFields compression_fields(const CompressionLaw& law, const StripHistory& strip, const Tests& tests) {
   CurveFields fields;
   fields.curve = law.master;
   for (size_t k = 0; k < law.factors.size(); ++k) fields.rates.push_back({law.rates[k], law.factors[k], {}});
   fields.source = fmt::format(
       "Inverse bending model: the master curve has the slope of tension up to 0.1 % and 0.5 GPa beyond; its "
-      "factors are those with which a simulated strip of {:g} mm drops as measured, from {:.1f} mm after {:g} s "
+      "factors are those with which a strip of {:g} mm, simulated with {} section points, drops as measured, from {:.1f} mm after {:g} s "
       "to {:.1f} mm at rest. E_static {:.3g} MPa, omega_1 {:.3g} 1/s, alpha {:.3g} 1/s",
-      1e3 * strip.tips.length, 1e3 * law.first_tip, law.times.back(), 1e3 * law.static_tip,
-      1e-6 * 12 * law.stiffness / std::pow(thickness, 3), law.frequency, law.alpha);
+      1e3 * strip.tips.length, tests.section_points, 1e3 * law.first_tip, law.times.back(), 1e3 * law.static_tip,
+      1e-6 * 12 * law.stiffness / std::pow(tests.thickness, 3), law.frequency, law.alpha);
   return fields;
 }
 
@@ -123,7 +124,7 @@ MaterialFields material_of(const Tests& tests, const Characterisation& found) {
   else
     assumed(material.tension);
   if (found.compression)
-    material.compression = compression_fields(*found.compression, found.strips.front(), tests.thickness);
+    material.compression = compression_fields(*found.compression, found.strips.front(), tests);
   else
     assumed(material.compression);
   if (tests.transverse_shear_modulus) material.transverse_shear_modulus = *tests.transverse_shear_modulus;
@@ -163,15 +164,57 @@ Fabric fabric_for_bending(const Tests& tests, const Characterisation& found) {
   return fabric;
 }
 
-/// One specimen of each rate is played again.
-std::vector<const StripTest*> one_of_each_rate(const std::vector<StripTest>& tests) {
-  std::vector<const StripTest*> chosen;
-  for (const StripTest& test : tests) {
-    const bool known = std::any_of(chosen.begin(), chosen.end(),
-                                   [&](const StripTest* other) { return other->rate == test.rate; });
-    if (!known) chosen.push_back(&test);
+/// (displacement, force) as measured, from the first row on.
+std::vector<Eigen::Vector2d> force_over_way(const StripTest& test) {
+  std::vector<Eigen::Vector2d> points;
+  const std::vector<double>& way = test.table[TestQuantity::displacement];
+  for (size_t k = 0; k < test.table.rows(); ++k)
+    points.emplace_back(way[k] - way.front(), test.table[TestQuantity::force][k]);
+  return points;
+}
+
+/// (displacement, force) of the strip alone: without the machine and the toe.
+std::vector<Eigen::Vector2d> force_over_way(const StripTest& test, const StrainPoints& specimen, double thickness) {
+  std::vector<Eigen::Vector2d> points;
+  for (size_t k = 0; k < specimen.strain.size(); ++k)
+    points.emplace_back(test.height * specimen.strain[k], test.width * thickness * specimen.stress[k]);
+  return points;
+}
+
+/// Displacement at which a bias extension has sheared its fabric as far as the law's angles hold.
+double way_to_valid(const StripTest& test, const ShearLaw& law) {
+  const double half = std::numbers::pi / 4 - law.valid_to / 2;
+  return (test.height - test.width) * (std::numbers::sqrt2 * std::cos(half) - 1);
+}
+
+/// Plays tests again with the material that was found: of tension the first specimen of the fastest rate, whose curve
+/// the material has; of bias extension the first one of each rate; all cantilevers.
+void verify(const Tests& tests, int threads, Characterisation& found) {
+  const Fabric fabric = fabric_of(found.material);
+  std::vector<std::function<Verification()>> runs;
+  for (size_t k = 0; k < tests.tension.size(); ++k) {
+    const StrainPoints& specimen = found.tension->specimens[k];
+    if (specimen.rate != found.tension->rate) continue;
+    runs.emplace_back([&, k] {
+      const StripTest& test = tests.tension[k];
+      return verify_strip(test, force_over_way(test, specimen, tests.thickness), fabric, false,
+                          found.tension->valid_to * test.height);
+    });
+    break;
   }
-  return chosen;
+  std::set<double> rates;
+  for (const StripTest& test : tests.bias_extension) {
+    if (!rates.insert(test.rate).second) continue;
+    runs.emplace_back(
+        [&] { return verify_strip(test, force_over_way(test), fabric, true, way_to_valid(test, *found.bias)); });
+  }
+  for (const StripHistory& strip : found.strips)
+    runs.emplace_back([&] {
+      return verify_cantilever(strip.tips, strip.file, fabric, tests.gravity, tests.section_points);
+    });
+  found.verifications.resize(runs.size());
+  parallel_for(
+      int(runs.size()), [&](int k) { found.verifications[size_t(k)] = runs[size_t(k)](); }, threads);
 }
 
 }  // namespace
@@ -203,23 +246,11 @@ Characterisation characterise(const Tests& tests, int threads,
   if (!found.strips.empty()) {
     say("bending: twelve strips");
     found.compression = compression_law(found.strips.front().tips, fabric_for_bending(tests, found),
-                                        tests.gravity, threads);
+                                        tests.gravity, tests.section_points, threads);
   }
   found.material = material_of(tests, found);
-  if (!found.bias) return found;
-  say("bias extension, simulated with the material");
-  const Fabric fabric = fabric_of(found.material);
-  const std::vector<const StripTest*> strips = one_of_each_rate(tests.bias_extension);
-  found.verifications.resize(strips.size());
-  parallel_for(
-      int(strips.size()),
-      [&](int k) {
-        const StripTest& test = *strips[size_t(k)];
-        const double length = test.height - test.width, angle = found.bias->valid_to;
-        const double to = length * (std::numbers::sqrt2 * std::cos(std::numbers::pi / 4 - angle / 2) - 1);
-        found.verifications[size_t(k)] = verify_strip(test, fabric, true, to);
-      },
-      threads);
+  say("tests, simulated with the material");
+  verify(tests, threads, found);
   return found;
 }
 

@@ -18,6 +18,7 @@ namespace drapeplan {
 
 /// A cantilever in time, and what its slopes at the clamp say.
 struct StripHistory {
+  std::string file;                    ///< of its tip, or of its last picture
   TipHistory tips;
   std::vector<StripShape> shapes;      ///< of pictures
   std::vector<double> shear_modulus;   ///< at the times of the shapes, Eq. (14) [Pa]
@@ -30,6 +31,7 @@ struct Characterisation {
   std::vector<StripHistory> strips;  ///< of all cantilevers
   std::optional<CompressionLaw> compression;  ///< from the first cantilever
   MaterialFields material;        ///< shear: of the bias extension if there is one, else of the frames
+  /// Of tension and bias extension one specimen of each rate that gave a curve, and all cantilevers.
   std::vector<Verification> verifications;
 };
 

@@ -111,32 +111,59 @@ ReportFigure bending_figure(const CompressionLaw& law) {
           line_chart(chart)};
 }
 
+std::string shear_modulus_text(const StripHistory& strip) {
+  return fmt::format("the slopes at the clamp mean a transverse shear modulus of {:.2g} MPa at first and {:.2g} MPa "
+                     "in the end (Eq. (14))",
+                     1e-6 * strip.shear_modulus.front(), 1e-6 * strip.shear_modulus.back());
+}
+
 ReportFigure strip_figure(const StripHistory& strip) {
   Chart chart{.title = fmt::format("Cantilever of {:g} mm", 1e3 * strip.tips.length), .x_label = "time [s]",
-              .y_label = "drop of the tip [mm]", .series = {}};
+              .y_label = "drop of the tip [mm]", .series = {}, .log_x = true};
   chart.series.push_back({.name = "", .points = points(strip.tips.time, 1, strip.tips.tip, 1e3), .dots = true});
-  std::string text = "Drop of the tip as measured.";
-  if (!strip.shear_modulus.empty())
-    text += fmt::format(" The slopes at the clamp mean a transverse shear modulus of {:.2g} MPa at first and {:.2g} "
-                        "MPa in the end (Eq. (14)).",
-                        1e-6 * strip.shear_modulus.front(), 1e-6 * strip.shear_modulus.back());
+  std::string text = "Drop of the tip as measured";
+  text += strip.shear_modulus.empty() ? "." : "; " + shear_modulus_text(strip) + ".";
   return {text, line_chart(chart)};
 }
 
+/// What a verification says, in words.
+std::string verdict(const Verification& v) {
+  if (!v.failure.empty()) return "did not come to its end: " + v.failure;
+  if (v.what == Compared::force)
+    return fmt::format("differs by {:.1f} % of the force at most, up to {:.1f} mm", 1e2 * v.error,
+                       1e3 * v.compared_to);
+  return fmt::format("differs by {:.1f} % of the drop at rest at most, from {:.3g} s on, and by {:.1f} % in the end",
+                     1e2 * v.error, v.compared_from, 1e2 * v.end_error);
+}
+
 ReportFigure verification_figure(const Verification& v) {
-  Chart chart{.title = v.name, .x_label = "displacement [mm]", .y_label = "force [N]", .series = {}};
+  const bool force = v.what == Compared::force;
+  Chart chart{.title = v.name,
+              .x_label = force ? "displacement [mm]" : "time [s]",
+              .y_label = force ? "force [N]" : "drop of the tip [mm]",
+              .series = {},
+              .log_x = !force};
+  const Eigen::Array2d unit = force ? Eigen::Array2d(1e3, 1) : Eigen::Array2d(1, 1e3);
   ChartSeries measured{.name = "measured", .points = {}, .dots = true}, simulated{.name = "simulated", .points = {}};
   const size_t step = std::max<size_t>(1, v.measured.size() / kShown);
-  for (size_t k = 0; k < v.measured.size(); k += step)
-    measured.points.emplace_back(1e3 * v.measured[k].x(), v.measured[k].y());
-  for (const Eigen::Vector2d& point : v.simulated) simulated.points.emplace_back(1e3 * point.x(), point.y());
+  for (size_t k = 0; k < v.measured.size(); k += step) measured.points.emplace_back(unit * v.measured[k].array());
+  for (const Eigen::Vector2d& point : v.simulated) simulated.points.emplace_back(unit * point.array());
   chart.series = {measured, simulated};
-  const std::string verdict =
-      v.failure.empty() ? fmt::format("Up to {:.1f} mm they differ by {:.1f} % of the force at most.",
-                                      1e3 * v.compared_to, 1e2 * v.error)
-                        : "The run did not end: " + v.failure;
-  return {fmt::format("{}: {} and the same strip simulated with the material. {}", v.name, v.file, verdict),
+  return {fmt::format("{}: {} and the same strip simulated with the material, which {}.", v.name, v.file, verdict(v)),
           line_chart(chart)};
+}
+
+json strip_json(const StripHistory& strip) {
+  json result{{"file", strip.file},
+              {"length", strip.tips.length},
+              {"time", strip.tips.time},
+              {"tip", strip.tips.tip},
+              {"root_strain", strip.tips.root_strain}};
+  if (strip.shapes.empty()) return result;
+  result["root_slope"] = json::array();
+  for (const StripShape& shape : strip.shapes) result["root_slope"].push_back(shape.slope(0));
+  result["transverse_shear_modulus"] = strip.shear_modulus;
+  return result;
 }
 
 }  // namespace
@@ -155,10 +182,15 @@ json characterisation_json(const Characterisation& found) {
                              {"frequency", law->frequency}, {"alpha", law->alpha},
                              {"model", {{"scale", law->model.scale}, {"tip", law->model.tip}}}};
   }
+  for (const StripHistory& strip : found.strips) result["cantilever"].push_back(strip_json(strip));
   for (const Verification& v : found.verifications) {
-    json one{{"name", v.name}, {"file", v.file}, {"compared_to", v.compared_to}};
+    json one{{"name", v.name},
+             {"file", v.file},
+             {"compared", v.what == Compared::force ? "force" : "drop"},
+             {"compared_from", v.compared_from},
+             {"compared_to", v.compared_to}};
     if (v.failure.empty())
-      one["error"] = v.error;
+      one["error"] = v.error, one["end_error"] = v.end_error;
     else
       one["failure"] = v.failure;
     result["verifications"].push_back(one);
@@ -175,12 +207,12 @@ std::string characterisation_text(const Characterisation& found) {
   mode("tension", found.material.tension);
   mode("shear", found.material.shear);
   mode("compression", found.material.compression);
-  for (const Verification& v : found.verifications) {
-    text += v.failure.empty()
-                ? fmt::format("{}, simulated: differs by {:.1f} % of the force at most, up to {:.1f} mm\n", v.name,
-                              1e2 * v.error, 1e3 * v.compared_to)
-                : fmt::format("{}, simulated: {}\n", v.name, v.failure);
+  for (const StripHistory& strip : found.strips) {
+    if (!strip.shear_modulus.empty())
+      text += fmt::format("cantilever of {:g} mm: {}; the material has {:.2g} MPa\n", 1e3 * strip.tips.length,
+                          shear_modulus_text(strip), 1e-6 * found.material.transverse_shear_modulus);
   }
+  for (const Verification& v : found.verifications) text += fmt::format("{}, simulated: {}\n", v.name, verdict(v));
   return text;
 }
 

@@ -68,11 +68,7 @@ Specimen specimen_of(const std::string& file, const TestTable& table, double spe
       not_decreasing(fit_at_knots(places, one.force.angle, knots, 0), std::vector<double>(knots.size(), 1));
   const MonotoneCubic angle(knots, angles);
   one.rate_at = [angle, knots, angles, speed](double at) {
-    size_t k = 1;
-    while (k + 1 < angles.size() && angles[k] < at) ++k;
-    const double rise = angles[k] - angles[k - 1];
-    const double place = knots[k - 1] + (rise > 0 ? (at - angles[k - 1]) / rise : 0) * (knots[k] - knots[k - 1]);
-    return std::max(angle.slope(place), 1e-6) * speed;
+    return std::max(angle.slope(value_between(angles, knots, at)), 1e-6) * speed;
   };
   return one;
 }

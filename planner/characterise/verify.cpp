@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -37,8 +39,8 @@ Case strip_case(const StripTest& test, const Fabric& fabric, bool bias, double t
   strip.grips.push_back({"foot", outline[0], outline[1], {0, 0, 0}});
   strip.grips.push_back({"head", outline[3], outline[2], {0, test.rate, 0}, kRamp * strip.duration});
   FemOptions fem;
-  constexpr double kCells = 11;  // across the width, as in cases/bias-extension.json
-  fem.mesh_size = test.width / kCells * (bias ? std::numbers::sqrt2 / 1.4409 : 1);
+  constexpr double kCellsBias = 11, kCellsTension = 4;  // across the width; as in cases/bias-extension.json
+  fem.mesh_size = bias ? test.width / kCellsBias * std::numbers::sqrt2 / 1.4409 : test.width / kCellsTension;
   fem.section_points = 1;
   fem.mass_scaling = mass_scaling;
   constexpr double kSimulated = 1;  // [s]: a run of a second, as in cases/bias-extension.json
@@ -47,22 +49,38 @@ Case strip_case(const StripTest& test, const Fabric& fabric, bool bias, double t
   return strip;
 }
 
-/// Largest difference over the largest force so far, between the second tenth and the end: before, both are
-/// small, and the grips still gain speed.
-double largest_error(const Verification& v) {
-  std::vector<double> way, force;
+/// The errors between `compared_from` and `compared_to`, which ends where one of the two curves ends.
+void compare(Verification& v) {
+  std::vector<double> x, y;
   for (const Eigen::Vector2d& point : v.simulated) {
-    if (!way.empty() && !(point.x() > way.back())) continue;
-    way.push_back(point.x()), force.push_back(point.y());
+    if (!x.empty() && !(point.x() > x.back())) continue;
+    x.push_back(point.x()), y.push_back(point.y());
   }
-  const MonotoneCubic simulated(way, force);
-  double error = 0, largest = 0;
+  const MonotoneCubic simulated(x, y);
+  constexpr double kRoundOff = 1e-9;
+  v.compared_to = std::min({v.compared_to, x.back(), v.measured.back().x()});
+  double largest = 0;
   for (const Eigen::Vector2d& point : v.measured) {
-    largest = std::max(largest, point.y());
-    if (point.x() < 0.2 * v.compared_to || point.x() > std::min(v.compared_to, way.back())) continue;
-    error = std::max(error, std::abs(simulated(point.x()) - point.y()) / largest);
+    if (point.x() > v.compared_to * (1 + kRoundOff)) break;
+    largest = v.what == Compared::drop ? v.measured.back().y() : std::max(largest, point.y());
+    if (point.x() < v.compared_from) continue;
+    v.end_error = std::abs(simulated(point.x()) - point.y()) / largest;
+    v.error = std::max(v.error, v.end_error);
   }
-  return error;
+}
+
+/// Plays a case and notes what `point` sees at equally spaced times; then compares.
+void play(const Case& strip, const Model& model, int frames, Verification& v,
+          const std::function<Eigen::Vector2d(const Snapshot&)>& point) {
+  RunRequest request;
+  request.duration = strip.duration;
+  request.frames = frames;
+  request.observe = [&](const Snapshot& frame) { v.simulated.push_back(point(frame)); };
+  const RunResult run = simulate(model, request);
+  if (run.summary.status == RunStatus::done)
+    compare(v);
+  else
+    v.failure = run.summary.message;
 }
 
 /// Mean shear angle along the axis of a bias-extension strip, of the elements that it cuts into halves between the
@@ -105,22 +123,50 @@ PulledStrip pull_strip(const StripTest& test, const Fabric& fabric, bool bias, d
   return result;
 }
 
-Verification verify_strip(const StripTest& test, const Fabric& fabric, bool bias, double to) {
-  Verification result{.name = fmt::format("{} at {:g} mm/min", bias ? "bias extension" : "tension",
+Verification verify_strip(const StripTest& test, std::vector<Eigen::Vector2d> measured, const Fabric& fabric,
+                          bool bias, double to) {
+  constexpr double kFrom = 0.2;  // of the way that is compared
+  Verification result{.what = Compared::force,
+                      .name = fmt::format("{} at {:g} mm/min", bias ? "bias extension" : "tension",
                                           std::round(6e6 * test.rate) / 100),
                       .file = test.file,
-                      .measured = {},
+                      .measured = std::move(measured),
                       .simulated = {},
+                      .compared_from = kFrom * to,
                       .compared_to = to,
                       .failure = {}};
-  const std::vector<double>& way = test.table[TestQuantity::displacement];
-  for (size_t k = 0; k < test.table.rows(); ++k)
-    result.measured.emplace_back(way[k] - way.front(), test.table[TestQuantity::force][k]);
   constexpr double kMassScaling = 20;  // as in cases/bias-extension.json
   PulledStrip strip = pull_strip(test, fabric, bias, to, kMassScaling);
   result.simulated = std::move(strip.force);
   result.failure = std::move(strip.failure);
-  if (result.failure.empty()) result.error = largest_error(result);
+  if (result.failure.empty()) compare(result);
+  return result;
+}
+
+Verification verify_cantilever(const TipHistory& history, const std::string& file, const Fabric& fabric,
+                               double gravity, int section_points) {
+  constexpr double kSimulated = 13;  // [s]: longer tests are played faster; as in cases/cantilever-150.json
+  constexpr double kPeriods = 1.25;  // after which less than 1 % of a critically damped fall is left
+  constexpr int kFrames = 401;
+  Case strip = falling_strip(fabric, history.length, history.width, gravity, section_points);
+  strip.duration = history.time.back();
+  FemOptions& fem = strip.fidelities.at(kReport);
+  fem.time_scaling = std::max(1.0, strip.duration / kSimulated);
+  const double period = 2 * std::numbers::pi / (0.5 * *strip.damping);
+  Verification result{.what = Compared::drop,
+                      .name = fmt::format("cantilever of {:g} mm", 1e3 * history.length),
+                      .file = file,
+                      .measured = {},
+                      .simulated = {},
+                      .compared_from = kPeriods * period * std::sqrt(fem.mass_scaling) * fem.time_scaling,
+                      .compared_to = strip.duration,
+                      .failure = {}};
+  for (size_t k = 0; k < history.time.size(); ++k) result.measured.emplace_back(history.time[k], history.tip[k]);
+  result.compared_from = std::min(result.compared_from, result.compared_to);  // its end at least
+  const Model model = model_of(strip, fem);
+  const size_t tip = nearest_node(model, {0.5 * history.length, 0});
+  play(strip, model, kFrames, result,
+       [&](const Snapshot& frame) { return Eigen::Vector2d(frame.time, -frame.position[tip].z()); });
   return result;
 }
 

@@ -122,11 +122,7 @@ void print_terms(const Model& model, const CommonOptions& options) {
 json probes_json(const Case& definition, const Model& model, const Snapshot& start, const Snapshot& end) {
   json probes = json::object();
   for (const Probe& probe : definition.probes) {
-    const auto& rest = model.scene().mesh.rest;
-    size_t nearest = 0;
-    for (size_t n = 1; n < rest.size(); ++n) {
-      if ((rest[n] - probe.place).norm() < (rest[nearest] - probe.place).norm()) nearest = n;
-    }
+    const size_t nearest = nearest_node(model, probe.place);
     const Eigen::Vector3d u = end.position[nearest] - start.position[nearest];
     probes[probe.name] = {{"displacement", {u.x(), u.y(), u.z()}}};
   }

@@ -144,6 +144,14 @@ Model model_of(const Case& definition, const FemOptions& options) {
   }
 }
 
+size_t nearest_node(const Model& model, const Eigen::Vector2d& place) {
+  const std::vector<Eigen::Vector2d>& rest = model.scene().mesh.rest;
+  const auto closer = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return (a - place).squaredNorm() < (b - place).squaredNorm();
+  };
+  return size_t(std::min_element(rest.begin(), rest.end(), closer) - rest.begin());
+}
+
 ReachProblem reach_problem_of(const Case& definition, const std::vector<Eigen::Vector3d>& targets) {
   const RigOptions& rig = *definition.grippers;
   ReachProblem problem{rig, *definition.mold, targets, definition.ply.position};

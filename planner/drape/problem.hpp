@@ -34,6 +34,9 @@ Scene scene_of(const Case& definition, const FemOptions& options);
 /// suffice.
 Model model_of(const Case& definition, const FemOptions& options);
 
+/// The node nearest to a place (u, v) of the flat ply [m].
+size_t nearest_node(const Model& model, const Eigen::Vector2d& place);
+
 /// The reach problem of a case with grippers. @param targets  mapped places of the pads [m].
 ReachProblem reach_problem_of(const Case& definition, const std::vector<Eigen::Vector3d>& targets);
 

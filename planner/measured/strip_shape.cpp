@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "planner/measured/bisect.hpp"
+
 namespace drapeplan {
 namespace {
 
@@ -42,12 +44,7 @@ double StripShape::length() const {
 
 double StripShape::place(double share) const {
   const double wanted = share * length();
-  double low = 0, high = end;
-  for (int k = 0; k < 50; ++k) {
-    const double middle = 0.5 * (low + high);
-    (arc(*this, middle) < wanted ? low : high) = middle;
-  }
-  return high;
+  return bisect(0, end, [&](double x) { return arc(*this, x) >= wanted; });
 }
 
 StripShape strip_shape(const std::vector<Eigen::Vector2d>& line, double time) {
@@ -74,14 +71,6 @@ double DoublePowerLaw::operator()(double t) const {
 
 double DoublePowerLaw::rate(double t) const {
   return a * b * std::pow(t, b - 1) + c * d * std::pow(t, d - 1);
-}
-
-double DoublePowerLaw::time_of(double value, double first, double last) const {
-  for (int k = 0; k < 100; ++k) {
-    const double middle = std::sqrt(first * last);
-    ((*this)(middle) < value ? first : last) = middle;
-  }
-  return last;
 }
 
 DoublePowerLaw fit_double_power(const std::vector<double>& time, const std::vector<double>& value) {

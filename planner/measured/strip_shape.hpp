@@ -36,8 +36,6 @@ struct DoublePowerLaw {
   double a = 0, b = 0, c = 0, d = 0;
   [[nodiscard]] double operator()(double t) const;
   [[nodiscard]] double rate(double t) const;
-  /// The first time at which it has this value, if it grows; bisection between the ends.
-  [[nodiscard]] double time_of(double value, double first, double last) const;
 };
 
 /// Least squares in relative terms: for each pair of powers a and c follow; the powers are sought on a grid that

@@ -21,6 +21,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Strain of fibres beyond which a table holds something else.
 constexpr double kLargestTension = 0.2;
+/// How far what moves may seem to go back, of its whole way: more than noise.
+constexpr double kCrossheadNoise = 0.02, kTipNoise = 0.2;
 
 void visit_columns(FieldVisitor& v, ColumnNames& names, bool angle) {
   v.section({"columns", "What columns of the file are called, where that is not usual", false, {}, true}, true,
@@ -113,6 +115,10 @@ void visit_tests(FieldVisitor& v, Tests& tests) {
   v.field({"transverse_shear_modulus", &tests.transverse_shear_modulus,
            "Chosen one; the page shows what the slopes at the clamp say", Dimension::stress, positive()});
   v.field({"gravity", &tests.gravity, "Acceleration of the cantilevers", Dimension::acceleration, positive(100)});
+  v.field({"section_points", &tests.section_points,
+           "Of simulated cantilevers, 3 or 5: those of the cases that will use the material (`fem.section_points`). "
+           "Three see so little of a compression curve with a break that a strip of 150 mm drops 7 mm deeper",
+           Dimension::none, from(3, 5)});
   v.field({"shear_measure", choice(tests.shear_measure, {"conjugate", "force"}),
            "Of the material's shear curves, see material.shear.measure"});
   v.field({"shear_rates", choice(tests.shear_rates, {"law", "article"}),
@@ -172,7 +178,7 @@ class DataReader {
       double rate = 0;
       if constexpr (requires { test.rate; }) rate = reader_.good(pointer + "/rate") ? test.rate : 0;
       const std::string name = (folder_ / test.file).string();
-      check_order(reading.table, name);
+      check_order(reading.table, name, TestQuantity::displacement, kCrossheadNoise);
       check_way(reading.table, name, rate, longest);
       check_slip(reading.table, name);
     }
@@ -190,10 +196,9 @@ class DataReader {
                                               {TestQuantity::deflection, true, test.columns.deflection}});
       errors_.insert(errors_.end(), reading.errors.begin(), reading.errors.end());
       test.table = std::move(reading.table);
-      for (size_t k = 1; k < test.table.rows() && reading.errors.empty(); ++k) {
-        if (!(test.table[TestQuantity::time][k] > test.table[TestQuantity::time][k - 1]))
-          return fail((folder_ / test.file).string(), test.table.lines[k], TestQuantity::time,
-                      "does not increase: rows are not in their order");
+      if (reading.errors.empty()) {
+        check_order(test.table, (folder_ / test.file).string(), TestQuantity::deflection, kTipNoise);
+        check_drop(test, (folder_ / test.file).string());
       }
       return;
     }
@@ -215,6 +220,9 @@ class DataReader {
         throw WrongInput(fmt::format("the strip is {:.4g} mm long, not {:.4g} mm: the wrong scale, threshold or "
                                      "clamp",
                                      1e3 * length, 1e3 * test.length));
+      constexpr double kAbove = 0.02;  // of the length
+      if (one.line.back().y() > kAbove * test.length)
+        throw WrongInput("the strip ends above its clamp: is the clamp on the other side (`clamp_right`)?");
     } catch (const WrongInput& error) {
       const std::string reason = error.what();
       errors_.push_back({file, 0, "", reason.starts_with(file) ? reason.substr(file.size() + 2) : reason});
@@ -225,17 +233,40 @@ class DataReader {
     errors_.push_back({file, line, quantity_name(quantity), std::move(message)});
   }
 
-  void check_order(const TestTable& table, const std::string& file) {
-    const std::vector<double>& way = table[TestQuantity::displacement];
-    constexpr double kBackwards = 0.02;  // of the whole way: more than a crosshead's noise
+  /// Times increase, and so does, but for noise, what moves. @param noise  that is possible, of the whole way.
+  void check_order(const TestTable& table, const std::string& file, TestQuantity moves, double noise) {
+    const std::vector<double>& way = table[moves];
     for (size_t k = 1; k < table.rows(); ++k) {
       if (table.has(TestQuantity::time) && !(table[TestQuantity::time][k] > table[TestQuantity::time][k - 1]))
         return fail(file, table.lines[k], TestQuantity::time, "does not increase: rows are not in their order");
-      if (way[k] < way[k - 1] - kBackwards * range(way))
-        return fail(file, table.lines[k], TestQuantity::displacement,
+      if (way[k] < way[k - 1] - noise * range(way))
+        return fail(file, table.lines[k], moves,
                     fmt::format("jumps back from {:.4g} to {:.4g} mm: rows are not in their order, or the "
                                 "columns are swapped",
                                 1e3 * way[k - 1], 1e3 * way[k]));
+    }
+  }
+
+  /// A strip's tip hangs no lower than the strip is long, not above its clamp, and comes down ever more slowly.
+  void check_drop(const CantileverTest& test, const std::string& file) {
+    const std::vector<double>&time = test.table[TestQuantity::time], &drop = test.table[TestQuantity::deflection];
+    constexpr double kAbove = 0.05;   // of the length: more than noise
+    constexpr double kHalfway = 0.4;  // of the way, after half of the time: what creeps is further than this
+    for (size_t k = 0; k < drop.size(); ++k) {
+      const int line = test.table.lines[k];
+      if (drop[k] > test.length)
+        return fail(file, line, TestQuantity::deflection,
+                    fmt::format("{:.4g} mm is deeper than the strip is long, {:.4g} mm: the wrong unit, column or "
+                                "length",
+                                1e3 * drop[k], 1e3 * test.length));
+      if (drop[k] < -kAbove * test.length)
+        return fail(file, line, TestQuantity::deflection,
+                    fmt::format("{:.4g} mm lies above the clamp; deflections are > 0 downwards", 1e3 * drop[k]));
+      if (time[k] - time.front() < 0.5 * (time.back() - time.front())) continue;
+      if (drop[k] - drop.front() < kHalfway * (drop.back() - drop.front()))
+        return fail(file, line, TestQuantity::deflection,
+                    "grows ever faster, but a strip comes down ever more slowly: are the columns swapped?");
+      return;
     }
   }
 

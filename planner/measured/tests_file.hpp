@@ -74,6 +74,7 @@ struct Tests {
   std::vector<CantileverTest> cantilever;
   std::optional<double> transverse_shear_modulus;  ///< chosen; absent: the assumed one [Pa]
   double gravity = 9.81;                           ///< [m/s^2]
+  int section_points = FemOptions().section_points;  ///< of simulated cantilevers
   int shear_measure = 0;                   ///< index of ShearMeasure
   int shear_rates = 0;                     ///< 0 by the law, 1 as in the article; see bias_extension_law
   std::optional<MaterialFields> assumed;   ///< what is not tested

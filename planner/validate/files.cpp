@@ -29,7 +29,7 @@ std::vector<Group> groups_of(const std::vector<ComparisonResult>& results) {
     auto group =
         std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.name == result.group; });
     if (group == groups.end()) group = groups.insert(groups.end(), {result.group, {}});
-    group->rows.insert(group->rows.end(), result.compared.rows.begin(), result.compared.rows.end());
+    group->rows.insert(group->rows.end(), result.findings.rows.begin(), result.findings.rows.end());
   }
   return groups;
 }
@@ -178,7 +178,7 @@ std::string validation_page(const std::vector<ComparisonResult>& results) {
     page.tables.push_back(std::move(table));
   }
   for (const ComparisonResult& result : results)
-    page.figures.insert(page.figures.end(), result.compared.figures.begin(), result.compared.figures.end());
+    page.figures.insert(page.figures.end(), result.findings.figures.begin(), result.findings.figures.end());
   page.notes = {"A row is context where nobody says how exact the reference is: it is shown, not judged."};
   page.files = {{"result.json", "all figures"}, {"validate.md", "the tables as text"}};
   return html_report(page);

@@ -37,7 +37,7 @@ Net article_net() {
   return net;
 }
 
-Compared compare_article_net() {
+Findings compare_article_net() {
   const Net net = article_net();
   const struct {
     int i, j;
@@ -47,7 +47,7 @@ Compared compare_article_net() {
                    {0, 20, {0.07364, 0.49387, 0.06274}},
                    {20, 20, {0.44242, 0.47035, 0.02864}},
                    {20, 10, {0.46404, 0.25405, 0.05768}}};
-  Compared result;
+  Findings result;
   for (const auto& p : published) {
     constexpr double kPlaceTolerance = 0.5;  // [mm]
     result.rows.push_back({fmt::format("article's mold, node ({}, {}): distance to theirs", p.i, p.j), "mm",
@@ -69,7 +69,7 @@ Compared compare_article_net() {
 /// 24 x 24 nodes, 0.08 apart on the unit sphere. Lines of least shear are straight in the middle of the cells
 /// beside them: with the start half a cell off the ply's middle the pole lies in the middle of the net's
 /// middle cell.
-Compared compare_sphere() {
+Findings compare_sphere() {
   constexpr double kCell = 0.08;
   constexpr int kCells = 23, kMiddle = 11;
   constexpr double kPublished[] = {0.367,  1.467,  3.300,  5.863,  9.154, 13.161,
@@ -79,7 +79,7 @@ Compared compare_sphere() {
   const Net net = map_ply(mold, {kCells * kCell, kCells * kCell, {0, 0}, 0},
                           {Generators::minimum_shear, {0, 0}, off, kCell});
   const std::vector<double> shear = shear_field(net);
-  Compared result;
+  Findings result;
   for (int k = 1; k <= int(std::size(kPublished)); ++k) {
     const int cell = kMiddle + k;
     result.rows.push_back({fmt::format("unit sphere, cell {} along the diagonal: shear", k), "deg",

@@ -154,10 +154,10 @@ std::vector<Eigen::Vector2d> points_of(const std::array<double, N>& x, const std
 }
 
 /// The bias test to its law, and the law against the picture frame.
-Compared compare_laws() {
+Findings compare_laws() {
   constexpr double kLawShare = 0.15;
   const ShearLaw law = bias_law();
-  Compared result;
+  Findings result;
   for (size_t k = 0; k < kBiasAngle.size(); ++k)
     result.rows.push_back(within_share(
         fmt::format("law from bias extension: shear force at {} deg", kBiasAngle[k]), "N/mm", kBiasShear[k],
@@ -217,9 +217,9 @@ ReportFigure force_figure(const std::string& from, const PulledStrip& strip) {
 
 constexpr double kPulled = 30;  // [mm]
 
-Compared compare_strip_of_bias_law() {
+Findings compare_strip_of_bias_law() {
   const PulledStrip strip = simulated(bias_law(), kBiasWidth, kBiasHeight, kPulled);
-  Compared result;
+  Findings result;
   for (const size_t k : compared_points())
     result.rows.push_back(within_share(
         fmt::format("strip simulated with the law from bias extension: force at {} mm", kBiasWay[k]), "N",
@@ -239,9 +239,9 @@ Compared compare_strip_of_bias_law() {
   return result;
 }
 
-Compared compare_strip_of_frame_law() {
+Findings compare_strip_of_frame_law() {
   const PulledStrip strip = simulated(frame_law(kFrames[0]), kBiasWidth, kBiasHeight, kPulled);
-  Compared result;
+  Findings result;
   for (const size_t k : compared_points()) {
     const double mm = kBiasWay[k], degrees = bias_angle(1e-3 * mm, kBiasHeight - kBiasWidth) / kDegree;
     result.rows.push_back(
@@ -253,12 +253,12 @@ Compared compare_strip_of_frame_law() {
   return result;
 }
 
-Compared compare_angles() {
+Findings compare_angles() {
   constexpr double kTo = 80;            // [mm]
   constexpr double kFormula = 0.01;     // [deg]: figures have two decimals
   constexpr double kAngleShare = 0.01;  // as for other fabrics, tests/verification/bias_extension_test.cpp
   const PulledStrip strip = simulated(frame_law(kFrames[0]), kAngleWidth, kAngleHeight, kTo);
-  Compared result;
+  Findings result;
   for (size_t k = 0; k < kTheoryAngle.size(); ++k) {
     const double mm = 10 * double(k + 1);
     result.rows.push_back({fmt::format("angle from the crosshead at {} mm", mm), "deg", kTheoryAngle[k],
@@ -299,7 +299,7 @@ Compared compare_angles() {
 }  // namespace
 
 void add_twintex_comparisons(std::vector<Comparison>& comparisons) {
-  const auto add = [&](std::string name, std::function<Compared()> compare) {
+  const auto add = [&](std::string name, std::function<Findings()> compare) {
     comparisons.push_back({"Twintex", std::move(name), std::move(compare)});
   };
   add("laws", compare_laws);

@@ -43,12 +43,12 @@ ComparisonResult run_comparison(const Comparison& comparison) {
   const auto start = std::chrono::steady_clock::now();
   ComparisonResult result{comparison.group, comparison.name, {}};
   try {
-    result.compared = comparison.compare();
+    result.findings = comparison.compare();
   } catch (const std::exception& error) {
     ValidationRow row{.what = comparison.name, .unit = "", .source = "", .basis = ""};
     row.reference = row.ours = std::numeric_limits<double>::quiet_NaN();
     row.why = fmt::format("it did not come to an end: {}", error.what());
-    result.compared.rows.push_back(std::move(row));
+    result.findings.rows.push_back(std::move(row));
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

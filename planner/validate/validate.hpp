@@ -36,7 +36,7 @@ ValidationRow within_share(std::string what, std::string unit, double reference,
                            std::string source);
 
 /// What one comparison found.
-struct Compared {
+struct Findings {
   std::vector<ValidationRow> rows;
   std::vector<ReportFigure> figures = {};
 };
@@ -44,7 +44,7 @@ struct Compared {
 /// A comparison that runs on its own, in seconds.
 struct Comparison {
   std::string group, name;
-  std::function<Compared()> compare;  ///< may throw: then there is one row that differs and says so
+  std::function<Findings()> compare;  ///< may throw: then there is one row that differs and says so
 };
 
 /// Lists of comparisons, one function per file.
@@ -58,7 +58,7 @@ std::vector<Comparison> comparisons();
 
 struct ComparisonResult {
   std::string group, name;
-  Compared compared;
+  Findings findings;
   double seconds = 0;  ///< wall time
 };
 

@@ -28,7 +28,7 @@ TipHistory history() {
 
 TEST(BendingModel, FindsTheFactorOfTheShippedMaterial) {
   const Fabric fabric = shipped_fabric();
-  const CompressionLaw law = compression_law(history(), fabric, 9.81, 2);
+  const CompressionLaw law = compression_law(history(), fabric, 9.81, 3, 2);
   ASSERT_EQ(law.factors.size(), 6U);
   // The shipped factor was found by hand, with cases/cantilever-150.json.
   EXPECT_NEAR(law.factors.front(), 0.0945, 0.03 * 0.0945);

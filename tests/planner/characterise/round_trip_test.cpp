@@ -22,8 +22,28 @@ MaterialFields truth(bool shipped) {
   material.tension.curve = {{0, 0.001, 0.002, 0.004, 0.006}, {0, 8e6, 18e6, 40e6, 64e6}};
   const Curve shear{{0, 3 * kDegree, 10 * kDegree, 25 * kDegree, 40 * kDegree, 50 * kDegree},
                     {0, 2e4, 4e4, 9e4, 3e5, 9e5}};
+  // Less rate-dependent in compression; other curves than a master one cannot be found.
+  material.compression = {master_compression(material.tension.curve), 0.05, "",
+                          {{1e-15, 1, {}}, {1e-4, 1.15, {}}, {3e-4, 1.3, {}}, {1e-3, 1.6, {}}}};
   material.shear = {shear, 1, "", {{4.44e-4, 1, {}}, {2.22e-3, 1.25, {}}, {2.22e-2, 1.6, {}}}};
   return material;
+}
+
+/// Largest error allowed at the end of a verification.
+double allowed(const Verification& v) {
+  if (v.what == Compared::force) return 0.1;
+  // A strip of 70 mm is strained by 0.1 % at most, where the toe leaves the tension curve uncertain by some percent.
+  return v.name == "cantilever of 70 mm" ? 0.07 : 0.04;
+}
+
+void check_verifications(const Characterisation& found) {
+  ASSERT_EQ(found.verifications.size(), 7U);  // tension, three rates of bias extension, three cantilevers
+  for (const Verification& v : found.verifications) {
+    EXPECT_EQ(v.failure, "");
+    EXPECT_FALSE(v.simulated.empty());
+    EXPECT_LT(v.end_error, allowed(v)) << v.name;
+    EXPECT_LT(v.error, v.what == Compared::force ? 0.1 : 0.12) << v.name;  // of a strip: on its way down
+  }
 }
 
 class RoundTrip : public testing::TestWithParam<std::pair<bool, unsigned>> {};
@@ -54,10 +74,15 @@ TEST_P(RoundTrip, FindsTheTruth) {
           << angle << " deg, " << rate << " 1/s";
     }
   }
-  for (const Verification& v : found.verifications) {
-    EXPECT_EQ(v.failure, "");
-    EXPECT_LT(v.error, 0.1) << v.name;
-  }
+  ASSERT_TRUE(found.compression);
+  constexpr double kStrain = 0.003;
+  const auto miss = [&](double rate) {
+    return again.compression(kStrain, rate, again.rate_floor) / fabric.compression(kStrain, rate, fabric.rate_floor) - 1;
+  };
+  EXPECT_NEAR(miss(0), 0, 0.06);
+  // A quartic bends too little at the clamp: rates are read too low, so that curves at a rate are too stiff.
+  for (const double rate : {1e-4, 2e-4, 4e-4}) EXPECT_NEAR(miss(rate), 0, 0.16) << rate << " 1/s";
+  check_verifications(found);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RoundTrip,

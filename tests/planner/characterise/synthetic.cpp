@@ -9,6 +9,7 @@
 
 #include "planner/characterise/characterise.hpp"
 #include "planner/method/normal.hpp"
+#include "tests/planner/characterise/synthetic_strip.hpp"
 
 namespace drapeplan::test {
 namespace {
@@ -18,6 +19,10 @@ using nlohmann::json;
 constexpr double kTensionWidth = 0.025, kTensionHeight = 0.150, kLargestForce = 500;
 constexpr double kBiasWidth = 0.120, kBiasHeight = 0.270, kBiasWay = 0.050;
 constexpr int kRows = 500;
+constexpr double kStripWidth = 0.025, kLongStrip = 0.150, kOtherStrips[] = {0.100, 0.070}, kGravity = 9.81;
+constexpr double kFirstFrame = 0.4, kHangs = 60;  // [s]: until no further deformation is visible
+constexpr double kPixel = 2e-4;
+constexpr int kFrames = 25;
 
 class Bench {
  public:
@@ -67,7 +72,36 @@ class Bench {
     return table.name;
   }
 
+  /// Pictures of the long strip, at times in equal ratios.
+  json pictures() {
+    json frames = json::array();
+    const std::vector<CreepingStrip> strips = creeping_strip(fabric_, kLongStrip, kGravity, times(kFrames));
+    for (const CreepingStrip& strip : strips) {
+      const std::string name = fmt::format("strip_{:02}.pgm", frames.size() + 1);
+      write_picture(folder_ / name, strip, kPixel, strips.back().tip(), bits_);
+      frames.push_back({{"file", name}, {"time", fmt::format("{:.6g} s", strip.time)}});
+    }
+    return frames;
+  }
+
+  /// The tip of another strip, as a table.
+  std::string tip(double length) {
+    Table table{fmt::format("strip_{:g}.csv", 1e3 * length), {}};
+    table.out.open(folder_ / table.name);
+    table.out << "Synthetic data: computed, not measured\nTime (s);Deflection (mm)\n";
+    for (const CreepingStrip& strip : creeping_strip(fabric_, length, kGravity, times(4 * kFrames)))
+      table.out << fmt::format("{:.5f};{:.4f}\n", strip.time, 1e3 * (strip.tip() + spoilt_.tip_noise * normal()));
+    return table.name;
+  }
+
  private:
+  static std::vector<double> times(int count) {
+    std::vector<double> list;
+    for (int k = 0; k < count; ++k)
+      list.push_back(kFirstFrame * std::pow(kHangs / kFirstFrame, double(k) / (count - 1)));
+    return list;
+  }
+
   struct Table {
     std::string name;
     std::ofstream out;
@@ -112,6 +146,7 @@ void write_synthetic_tests(const std::filesystem::path& folder, const MaterialFi
              {"source", "Synthetic data, computed from a known material: not measured"},
              {"thickness", fmt::format("{:g} mm", 1e3 * truth.thickness)},
              {"areal_density", fmt::format("{:g} g/m^2", 1e3 * truth.areal_density)},
+             {"section_points", 5},  // the truth is the exact beam
              {"compliance", json::array()},
              {"tension", json::array()},
              {"bias_extension", json::array()},
@@ -126,6 +161,17 @@ void write_synthetic_tests(const std::filesystem::path& folder, const MaterialFi
     for (int k = 1; k <= 3; ++k)
       tests["bias_extension"].push_back(
           strip(bench.bias(rate * kPerMinute, k), kBiasWidth, kBiasHeight, rate * kPerMinute));
+  }
+  const auto cantilever = [](double length) -> json {
+    return {{"length", fmt::format("{:g} mm", 1e3 * length)}, {"width", fmt::format("{:g} mm", 1e3 * kStripWidth)}};
+  };
+  json first = cantilever(kLongStrip);
+  first["scale"] = fmt::format("{:g} mm", 1e3 * kPixel);
+  first["frames"] = bench.pictures();
+  tests["cantilever"] = json::array({first});
+  for (const double length : kOtherStrips) {
+    tests["cantilever"].push_back(cantilever(length));
+    tests["cantilever"].back()["file"] = bench.tip(length);
   }
   std::ofstream(folder / "tests.json") << tests.dump(2) << '\n';
 }

@@ -9,12 +9,21 @@ cd "$work" || exit 1
 "$(dirname "$json_value")/synthetic_tests" data "$quick" || fail "no synthetic data"
 expect 0 characterise data/tests.json --out found --json
 within stdout /bias_extension/valid_to_deg 29.99 30.01
-within stdout /verifications/0/error 0 0.1
+for k in 0 1 2 3; do within stdout /verifications/$k/error 0 0.1; done
+same "$(value stdout /verifications/4/compared)" drop "what is compared of a cantilever"
+within stdout /verifications/4/end_error 0 0.04
+within stdout /verifications/5/end_error 0 0.04
+within stdout /verifications/6/end_error 0 0.07
+within stdout /cantilever/0/transverse_shear_modulus/24 1e4 1e7
 same_file stdout found/result.json
 [ -s found/characterisation.html ] || fail "no page"
 value found/material.json /shear/source >source
 grep -q 'Bias extension of 9 specimens' source || fail "the material does not say where its shear is from"
 value found/material.json /compression/source >source
+grep -q 'a strip of 150 mm' source || fail "the material does not say where its compression is from"
+grep -q 'cantilever of 70 mm: strip_70.csv' found/characterisation.html || fail "the page lacks a cantilever"
+expect 0 characterise data/tests.json --set 'cantilever=[]' --set 'bias_extension=[]' --out short
+value short/material.json /compression/source >source
 grep -q 'Assumed, not tested' source || fail "the material does not say what was not tested"
 # A case takes the material.
 sed 's#"material": "[^"]*"#"material": "'"$work"'/found/material.json"#' "$source/cases/bias-extension.json" >strip.json
@@ -36,6 +45,18 @@ broken '400s/,[0-9.]+$/,-1/' bias_100_2.csv 'did the specimen slip'
 broken 's/"height": "270 mm"/"height": "230 mm"/' tests.json 'is less than twice the width'
 broken 's/"rate": "10 mm\/min"/"rate": "20 mm\/min"/' tests.json "but the test's rate is 20 mm/min"
 broken 's/"file": "steel_1.csv"/"file": "steel_9.csv"/' tests.json 'cannot be read'
+broken '50{h;d};80{G}' strip_70.csv 'rows are not in their order'
+broken '40s/;.*/;75/' strip_70.csv ':40: deflection: 75 mm is deeper than the strip is long, 70 mm'
+broken 's/;([0-9])/;-\1/' strip_70.csv 'lies above the clamp'
+broken 's/Time \(s\);Deflection \(mm\)/Deflection (mm);Time (s)/' strip_70.csv 'are the columns swapped'
+broken 's/Deflection \(mm\)/Deflection/' strip_70.csv ':2: Deflection: has no unit'
+broken '/"scale"/d' tests.json '/cantilever/0: "scale" is missing'
+broken 's/"scale": "0.2 mm"/"scale": "0.3 mm"/' tests.json 'mm long, not 150 mm: the wrong scale'
+broken 's/"scale"/"threshold": 0.95, "scale"/' tests.json 'strip_01.pgm: shows no strip'
+broken 's/"scale"/"clamp_right": true, "scale"/' tests.json 'is the clamp on the other side'
+broken 's/strip_01.pgm/strip_99.pgm/' tests.json 'strip_99.pgm: cannot be read as an image'
+broken 's/"strip_01.pgm"/"tests.json"/' tests.json 'tests.json: cannot be read as an image'
+broken 's/"time": "0.4 s"/"time": "0.8 s"/' tests.json '/cantilever/0/frames/1/time: times must increase'
 refuse 'none.json: cannot be read' characterise none.json
 refuse 'is not tested' characterise data/tests.json --set assumed=null
-finish 18
+finish 42

@@ -38,8 +38,14 @@ mkdir folder
 touch file
 echo '{ "format": "drapeplan-case 1", ' >syntax.json
 printf '\xff\xfe{\x00}\x00' >utf16.json
+{ echo 'Extension (mm),Load (N)'; for k in {0..20}; do echo "0.0$((k + 10)),$k"; done; } >pull.csv
+echo '{"format": "drapeplan-tests 1", "thickness": "0.3 mm", "areal_density": "314 g/m^2",
+  "tension": [{"file": "pull.csv", "width": "25 mm", "height": "150 mm", "rate": "2 mm/min"}],
+  "assumed": "'"$source"'/cases/materials/bmi-4hs.json"}' >tests.json
 
-for verb in map reach simulate plan bench study check; do
+# A verb's own document, a wrong unit and a wrong key in it.
+declare -A document=([characterise]=tests.json) unit=([characterise]='thickness=1 mn') key=([characterise]='thicknes=1 mm')
+for verb in map reach simulate plan bench study check characterise; do
   # shellcheck disable=SC2207
   words=($(command_of $verb))
   place=(--out refused)
@@ -50,12 +56,16 @@ for verb in map reach simulate plan bench study check; do
   denied 2 "$long: cannot be read: " "${words[@]}" "$long" "${place[@]}"
   denied 2 syntax.json: "${words[@]}" syntax.json "${place[@]}"
   denied 2 utf16.json "${words[@]}" utf16.json "${place[@]}"
-  denied 2 'unknown unit "mn"' "${words[@]}" "$quick" "${place[@]}" --set 'ply.width=1 mn'
-  denied 2 '/ply/widht: unknown key' "${words[@]}" "$quick" "${place[@]}" --set 'ply.widht=1 mm'
-  denied 2 'nothing' "${words[@]}" "$quick" "${place[@]}" --set nothing
-  denied 2 '--wrong' "${words[@]}" "$quick" "${place[@]}" --wrong
-  denied 2 '--threads' "${words[@]}" "$quick" "${place[@]}" --threads 0
+  words+=("${document[$verb]-$quick}")
+  denied 2 'unknown unit "mn"' "${words[@]}" "${place[@]}" --set "${unit[$verb]-ply.width=1 mn}"
+  denied 2 ': unknown key' "${words[@]}" "${place[@]}" --set "${key[$verb]-ply.widht=1 mm}"
+  denied 2 'nothing' "${words[@]}" "${place[@]}" --set nothing
+  denied 2 '--wrong' "${words[@]}" "${place[@]}" --wrong
+  denied 2 '--threads' "${words[@]}" "${place[@]}" --threads 0
 done
+denied 2 '/ply/widht: unknown key' map "$quick" --set 'ply.widht=1 mm' --out refused
+denied 2 'folder: is a folder, not a file' characterise tests.json --out refused \
+  --set 'tension=[{"file": "folder", "width": "25 mm", "height": "150 mm", "rate": "2 mm/min"}]'
 denied 2 'no scene' stress --only 'no such scene' --out refused
 denied 2 '--set and --seed' stress --set fem.rates=false --out refused
 denied 2 'no comparison' validate --only 'no such comparison' --out refused
@@ -83,7 +93,7 @@ if [ "$(id -u)" != 0 ]; then
   mkdir closed && chmod 500 closed
   places+=(closed/x) reasons+=("Permission denied")
 fi
-for verb in map reach simulate plan bench study check stress validate schema explain; do
+for verb in map reach simulate plan bench study check characterise stress validate schema explain; do
   # shellcheck disable=SC2207
   words=($(command_of $verb))
   case $verb in
@@ -91,7 +101,7 @@ for verb in map reach simulate plan bench study check stress validate schema exp
     validate) words+=(--only 'bending: softening strip') ;;
     schema) ;;
     explain) words+=(grippers) ;;
-    check | map | reach) words+=("$quick") ;;
+    check | map | reach | characterise) words+=("${document[$verb]-$quick}") ;;
     *) words+=("$quick" "${coarse[@]}") ;;
   esac
   for k in "${!places[@]}"; do

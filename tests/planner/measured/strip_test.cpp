@@ -93,7 +93,6 @@ TEST(DoublePowerLaw, FindsTwoPowers) {
     EXPECT_NEAR(law(time[k]), value[k], 2e-3 * value[k]);
     EXPECT_NEAR(law.rate(time[k]), truth.rate(time[k]), 0.05 * truth.rate(time[k])) << time[k];
   }
-  EXPECT_NEAR(law.time_of(law(30), 0.4, 400), 30, 1e-3);
 }
 
 TEST(StripFrequency, IsThatOfTheArticle) {

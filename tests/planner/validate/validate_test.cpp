@@ -21,8 +21,8 @@ const Comparison& named(const std::vector<Comparison>& list, const std::string& 
 
 void expect_agreement(const std::string& text, size_t rows) {
   const ComparisonResult result = run_comparison(named(comparisons(), text));
-  EXPECT_GE(result.compared.rows.size(), rows) << text;
-  for (const ValidationRow& row : result.compared.rows)
+  EXPECT_GE(result.findings.rows.size(), rows) << text;
+  for (const ValidationRow& row : result.findings.rows)
     EXPECT_NE(row.agreement(), Agreement::differs)
         << row.what << ": " << row.ours << " instead of " << row.reference << ": " << row.why;
 }
@@ -36,13 +36,13 @@ TEST(Validation, LawsOfBiasExtensionAndPictureFrameFitEachOther) { expect_agreem
 
 TEST(Validation, StripsBendAsOtherProgramsSay) {
   expect_agreement("bending: softening strip", 3);
-  expect_agreement("bending: softening strip, its law from its shape", 7);
+  expect_agreement("bending: softening strip, its law from its shape", 4);
   expect_agreement("bending: two moduli", 3);
 }
 
 TEST(Validation, NamesASourceAndAToleranceInEveryRow) {
   for (const char* text : {"mapping: net on a sphere", "Twintex: laws", "bending: softening strip"}) {
-    for (const ValidationRow& row : run_comparison(named(comparisons(), text)).compared.rows) {
+    for (const ValidationRow& row : run_comparison(named(comparisons(), text)).findings.rows) {
       EXPECT_FALSE(row.what.empty());
       EXPECT_FALSE(row.source.empty()) << row.what;
       EXPECT_GT(row.tolerance, 0) << row.what;
@@ -66,15 +66,15 @@ std::vector<ComparisonResult> some_results() {
   ValidationRow wrong = within_share("length | of <it>", "mm", 1, 2, 0.1, "a book");
   wrong.why = "the book is of another edition";
   const Comparison stopped{"b", "what stops",
-                           []() -> Compared { throw std::runtime_error("the disk is full"); }};
+                           []() -> Findings { throw std::runtime_error("the disk is full"); }};
   return {{"a", "lengths", {{within_share("width", "mm", 1, 1, 0.1, "a book"), wrong}}}, run_comparison(stopped)};
 }
 
 TEST(Validation, WhatStopsIsARowThatDiffersAndSaysWhy) {
   const ComparisonResult stopped = some_results().back();
-  ASSERT_EQ(stopped.compared.rows.size(), 1U);
-  EXPECT_EQ(stopped.compared.rows[0].agreement(), Agreement::differs);
-  EXPECT_NE(stopped.compared.rows[0].why.find("the disk is full"), std::string::npos);
+  ASSERT_EQ(stopped.findings.rows.size(), 1U);
+  EXPECT_EQ(stopped.findings.rows[0].agreement(), Agreement::differs);
+  EXPECT_NE(stopped.findings.rows[0].why.find("the disk is full"), std::string::npos);
 }
 
 TEST(Validation, DocumentsKeepARowThatDiffersAndSayWhy) {
