@@ -86,6 +86,8 @@ bool is_result_name(std::string_view name) {
                                      "stress.md",
                                      "validate.md",
                                      "validation.html",
+                                     "material.json",
+                                     "characterisation.html",
                                      "net.csv",
                                      "probes.csv",
                                      "grips.csv",

@@ -28,6 +28,8 @@ grep -q 'cantilever of 70 mm: strip_70.csv' found/characterisation.html || fail 
 expect 0 characterise data/tests.json --set 'cantilever=[]' --set 'bias_extension=[]' --out short
 value short/material.json /compression/source >source
 grep -q 'Assumed, not tested' source || fail "the material does not say what was not tested"
+expect 0 characterise data/tests.json --set 'cantilever=[]' --set 'bias_extension=[]' --out short
+[ -s short/earlier-1/material.json ] && [ -s short/earlier-1/characterisation.html ] || fail "not set aside"
 # A case takes the material.
 sed 's#"material": "[^"]*"#"material": "'"$work"'/found/material.json"#' "$source/cases/bias-extension.json" >strip.json
 expect 0 simulate strip.json --quiet
