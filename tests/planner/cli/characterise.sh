@@ -63,5 +63,6 @@ broken 's/strip_01.pgm/strip_99.pgm/' tests.json 'strip_99.pgm: cannot be read a
 broken 's/"strip_01.pgm"/"tests.json"/' tests.json 'tests.json: cannot be read as an image'
 broken 's/"time": "0.4 s"/"time": "0.8 s"/' tests.json 's": times must increase'
 refuse 'none.json: cannot be read' characterise none.json
-refuse 'is not tested' characterise data/tests.json --set assumed=null
+refuse 'is not tested' characterise data/tests.json --set assumed=null --set 'cantilever=[]'
+refuse 'must be given or assumed' characterise data/tests.json --set assumed=null
 finish 42
