@@ -40,8 +40,8 @@ Case strip_case(const StripTest& test, const Fabric& fabric, bool bias, double t
   strip.grips.push_back({"foot", outline[0], outline[1], {0, 0, 0}});
   strip.grips.push_back({"head", outline[3], outline[2], {0, test.rate, 0}, kRamp * strip.duration});
   FemOptions fem;
-  constexpr double kCellsBias = 11, kCellsTension = 4;  // across the width; as in cases/bias-extension.json
-  fem.mesh_size = bias ? test.width / kCellsBias * std::numbers::sqrt2 / 1.4409 : test.width / kCellsTension;
+  constexpr double kDiagonals = 8, kCells = 4;  // across the width: of cells at 45 degrees, or cells along it
+  fem.mesh_size = bias ? test.width / (kDiagonals * std::numbers::sqrt2) : test.width / kCells;
   fem.section_points = 1;
   fem.mass_scaling = mass_scaling;
   constexpr double kSimulated = 1;  // [s]: a run of a second, as in cases/bias-extension.json
