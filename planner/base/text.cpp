@@ -112,6 +112,18 @@ std::string escape_markup(std::string_view text) {
   return escaped;
 }
 
+std::string quoted_cell(std::string_view text) {
+  std::string cell = "\"";
+  for (const char c : text) cell += (c == '"' ? "\"\"" : std::string(1, c));
+  return cell + '"';
+}
+
+std::string markdown_cell(std::string_view text) {
+  std::string cell;
+  for (const char c : text) cell += (c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c));
+  return cell;
+}
+
 void write_text(const std::filesystem::path& file, std::string_view text) {
   const std::filesystem::path partial = file.string() + ".partial";
   std::FILE* stream = std::fopen(partial.c_str(), "wb");

@@ -24,6 +24,12 @@ std::string clean_text(std::string_view text);
 /// For text and attribute values of HTML, SVG and XML: the text is cleaned, and & < > " ' are replaced.
 std::string escape_markup(std::string_view text);
 
+/// A cell of a CSV table in quotes (RFC 4180).
+std::string quoted_cell(std::string_view text);
+
+/// A cell of a Markdown table: | is escaped, and a new line becomes a blank.
+std::string markdown_cell(std::string_view text);
+
 /// Writes a file by way of a temporary neighbour, so that no reader ever sees half of it.
 /// @throws NotFinished with the file and the reason.
 void write_text(const std::filesystem::path& file, std::string_view text);

@@ -13,7 +13,6 @@
 #include "fem/mesh/foot.hpp"
 #include "fem/run/monitor.hpp"
 #include "fem/run/simulate.hpp"
-#include "planner/tables/smooth.hpp"
 #include "planner/drape/problem.hpp"
 
 namespace drapeplan {
@@ -52,14 +51,9 @@ Case strip_case(const StripTest& test, const Fabric& fabric, bool bias, double t
 
 /// The errors between `compared_from` and `compared_to`, which ends where one of the two curves ends.
 void compare(Verification& v) {
-  std::vector<double> x, y;
-  for (const Eigen::Vector2d& point : v.simulated) {
-    if (!x.empty() && !(point.x() > x.back())) continue;
-    x.push_back(point.x()), y.push_back(point.y());
-  }
-  const MonotoneCubic simulated(x, y);
+  const MonotoneCubic simulated = curve_through(v.simulated);
   constexpr double kRoundOff = 1e-9;
-  v.compared_to = std::min({v.compared_to, x.back(), v.measured.back().x()});
+  v.compared_to = std::min({v.compared_to, simulated.end(), v.measured.back().x()});
   double largest = 0;
   for (const Eigen::Vector2d& point : v.measured) {
     if (point.x() > v.compared_to * (1 + kRoundOff)) break;
@@ -100,6 +94,15 @@ double axis_shear(const Scene& scene, const StripTest& test, const Snapshot& fra
 }
 
 }  // namespace
+
+MonotoneCubic curve_through(const std::vector<Eigen::Vector2d>& history) {
+  std::vector<double> x, y;
+  for (const Eigen::Vector2d& point : history) {
+    if (!x.empty() && !(point.x() > x.back())) continue;
+    x.push_back(point.x()), y.push_back(point.y());
+  }
+  return {std::move(x), std::move(y)};
+}
 
 PulledStrip pull_strip(const StripTest& test, const Fabric& fabric, bool bias, double to, double mass_scaling) {
   PulledStrip result;

@@ -8,6 +8,7 @@
 #include "fem/law/fabric.hpp"
 #include "planner/characterise/bending.hpp"
 #include "planner/measured/tests_file.hpp"
+#include "planner/tables/smooth.hpp"
 
 namespace drapeplan {
 
@@ -31,6 +32,9 @@ struct PulledStrip {
 /// @param to  displacement at the end [m].
 /// @param mass_scaling  of the run. Where the fabric resists less than 10 kPa, only 1 keeps inertia out of its shape.
 PulledStrip pull_strip(const StripTest& test, const Fabric& fabric, bool bias, double to, double mass_scaling);
+
+/// Values over the displacement or time of a simulation, which grows; points where it does not are left out.
+MonotoneCubic curve_through(const std::vector<Eigen::Vector2d>& history);
 
 /// What was measured and what is simulated with the material.
 struct Verification {

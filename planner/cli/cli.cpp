@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <iostream>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "planner/base/json_text.hpp"
+#include "planner/base/parallel.hpp"
 #include "planner/base/text.hpp"
 #include "planner/cli/process.hpp"
 
@@ -48,6 +50,26 @@ int run_guarded(const std::function<int()>& work, const std::string& subject) {
     print_failure(failure, subject);
     return failure.code;
   }
+}
+
+void add_only(CLI::App& verb, std::vector<std::string>& only, const std::string& things) {
+  verb.add_option("--only", only, fmt::format("only {} whose group and name hold this text (repeatable)", things))
+      ->type_name("TEXT");
+}
+
+void do_all(size_t count, const CommonOptions& options, const std::function<DoneLine(size_t)>& act) {
+  std::mutex printing;
+  size_t done = 0;
+  parallel_for(
+      int(count),
+      [&](int k) {
+        const DoneLine line = act(size_t(k));
+        const std::lock_guard<std::mutex> lock(printing);
+        ++done;
+        if (!options.quiet)
+          std::cerr << fmt::format("{:3} of {}, {:5.1f} s  {}\n", done, count, line.seconds, line.words);
+      },
+      options.threads);
 }
 
 Case load_case(const std::string& file, const CommonOptions& options, const std::vector<std::string>& needs,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -69,6 +70,31 @@ void add_verb(CLI::App& program, Action& action, const char* name, const char* t
     };
   });
 }
+
+/// Adds --only, which `chosen_of` reads. @param things  what it chooses from: "scenes".
+void add_only(CLI::App& verb, std::vector<std::string>& only, const std::string& things);
+
+/// Things with a group and a name whose "group: name" holds one of the texts; all if there are none.
+template <class Thing>
+std::vector<Thing> chosen_of(std::vector<Thing> all, const std::vector<std::string>& only) {
+  const auto unwanted = [&only](const Thing& thing) {
+    const std::string name = thing.group + ": " + thing.name;
+    return std::none_of(only.begin(), only.end(),
+                        [&](const std::string& text) { return name.find(text) != std::string::npos; });
+  };
+  if (!only.empty()) std::erase_if(all, unwanted);
+  return all;
+}
+
+/// What is said of a thing that is done.
+struct DoneLine {
+  double seconds = 0;  ///< that it took
+  std::string words;
+};
+
+/// Does things side by side; each has a line on stderr when it is done, unless --quiet.
+/// @param act  act(k) does the k-th one.
+void do_all(size_t count, const CommonOptions& options, const std::function<DoneLine(size_t)>& act);
 
 /// The case in `file` with the overrides (and the seed) of the command line.
 /// @param needs  sections that the verb cannot do without: "mapping", "grippers", "material", "mold".

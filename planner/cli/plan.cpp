@@ -178,11 +178,10 @@ void print_start(const DrapeProblem& problem) {
 
 std::string result_text(const DrapeProblem& problem, const PlanResult& result,
                         const std::filesystem::path& folder) {
-  const std::string force = best_force_text(problem, result);
-  std::string text =
-      fmt::format("\n{}\n{}\n{}{}{} evaluations ({} failed) in {} s", comparison_table(problem, result),
-                  result.search.message, force, force.empty() ? "" : "\n", result.search.evaluations, result.search.failed_evaluations,
-                  std::llround(result.wall_seconds));
+  std::string text = fmt::format("\n{}\n{}\n", comparison_table(problem, result), result.search.message);
+  if (const std::string force = best_force_text(problem, result); !force.empty()) text += force + "\n";
+  text += fmt::format("{} evaluations ({} failed) in {} s", result.search.evaluations,
+                      result.search.failed_evaluations, std::llround(result.wall_seconds));
   if (result.best.score.valid) text += fmt::format("; report: {}", (folder / "report.html").string());
   if (result.design && !result.search.interrupted) text += design_text(result);
   return text + "\n";

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "planner/base/text.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/stress/stress.hpp"
 
@@ -27,20 +28,6 @@ std::optional<double> true_over_estimated(const StressOutcome& o) {
 std::string cell(const std::optional<double>& value, fmt::string_view format) {
   if (!value || !std::isfinite(*value)) return "";
   return fmt::format(fmt::runtime(format), *value);
-}
-
-/// A field of a CSV table, quoted.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) out += (c == '"' ? "\"\"" : std::string(1, c));
-  return out + "\"";
-}
-
-/// A cell of a Markdown table.
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += (c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c));
-  return out;
 }
 
 template <class Field>
@@ -109,10 +96,10 @@ std::string stress_csv(const std::vector<StressOutcome>& outcomes) {
   for (const StressOutcome& o : outcomes) {
     const std::optional<double> dt = of_summary(o, [](const RunSummary& r) { return r.dt; });
     text += fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(o.group), quoted(o.name), verdict_name(o.verdict),
+        "{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted_cell(o.group), quoted_cell(o.name), verdict_name(o.verdict),
         cell(balance_of(o), "{:.2e}"), cell(kinetic_ratio_of(o), "{:.3g}"), cell(o.drift, "{:.2e}"),
         cell(true_over_estimated(o), "{:.4f}"), cell(o.limit_over_estimate, "{:.3f}"),
-        o.summary ? fmt::to_string(o.summary->steps) : "", cell(dt, "{:.4g}"), o.elements, quoted(o.reason));
+        o.summary ? fmt::to_string(o.summary->steps) : "", cell(dt, "{:.4g}"), o.elements, quoted_cell(o.reason));
   }
   return text;
 }
@@ -138,9 +125,9 @@ std::string stress_markdown(const std::vector<StressOutcome>& outcomes) {
           group);
     }
     const std::string limit = cell(o.limit_over_estimate, " ({:.2f})");
-    text += fmt::format("| {} | {} | {} | {} | {} | {} | {}{} |\n", escaped(o.name),
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {}{} |\n", markdown_cell(o.name),
                         o.verdict == Verdict::wrong ? "**wrong**" : verdict_name(o.verdict),
-                        escaped(o.reason), cell(balance_of(o), "{:.0e}"), cell(kinetic_ratio_of(o), "{:.2g}"),
+                        markdown_cell(o.reason), cell(balance_of(o), "{:.0e}"), cell(kinetic_ratio_of(o), "{:.2g}"),
                         cell(o.drift, "{:.0e}"), cell(true_over_estimated(o), "{:.2f}"), limit);
   }
   return text;

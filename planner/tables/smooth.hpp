@@ -16,6 +16,8 @@ class MonotoneCubic {
   MonotoneCubic(std::vector<double> x, std::vector<double> y);
   [[nodiscard]] double operator()(double x) const;
   [[nodiscard]] double slope(double x) const;
+  /// The last place.
+  [[nodiscard]] double end() const { return x_.back(); }
 
  private:
   [[nodiscard]] size_t piece(double x) const;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "planner/base/text.hpp"
 #include "planner/drape/result_fields.hpp"
 
 namespace drapeplan {
@@ -70,12 +71,6 @@ std::string reason_of(const ValidationRow& row) {
   if (row.agreement() == Agreement::differs && row.why.empty())
     return "no reason is known: something is wrong";
   return row.agreement() == Agreement::agrees ? "" : row.why;
-}
-
-std::string plain_cell(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += (c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c));
-  return out;
 }
 
 }  // namespace
@@ -145,9 +140,9 @@ std::string validation_markdown(const std::vector<ComparisonResult>& results) {
       const std::string why = reason_of(row), name = agreement_name(agreement);
       const std::string verdict = agreement == Agreement::differs ? "**" + name + "**" : name;
       const std::string unit = row.unit.empty() ? "" : " " + row.unit;
-      text += fmt::format("| {} | {}{} | {} | {} | {} | {} |\n", plain_cell(row.what), number(row.reference),
+      text += fmt::format("| {} | {}{} | {} | {} | {} | {} |\n", markdown_cell(row.what), number(row.reference),
                           unit, number(row.ours), explained_tolerance(row),
-                          verdict + (why.empty() ? "" : ": " + plain_cell(why)), plain_cell(row.source));
+                          verdict + (why.empty() ? "" : ": " + markdown_cell(why)), markdown_cell(row.source));
     }
   }
   return text;

@@ -132,12 +132,7 @@ PulledStrip simulated(const ShearLaw& law, double width, double height, double t
 
 /// Value of a simulated history at a displacement.
 double at_mm(const std::vector<Eigen::Vector2d>& history, double mm) {
-  std::vector<double> way, value;
-  for (const Eigen::Vector2d& point : history) {
-    if (!way.empty() && !(point.x() > way.back())) continue;
-    way.push_back(point.x()), value.push_back(point.y());
-  }
-  return MonotoneCubic(way, value)(1e-3 * mm);
+  return curve_through(history)(1e-3 * mm);
 }
 
 std::vector<Eigen::Vector2d> in_units(const std::vector<Eigen::Vector2d>& history, double y_unit) {

@@ -21,10 +21,7 @@ constexpr const char* kEnd = "end";
 
 /// A cell of a table: quoted where its text needs it (RFC 4180).
 std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
+  return text.find_first_of(",\"\r\n") == std::string::npos ? text : quoted_cell(text);
 }
 
 /// A table that is filled column by column.
