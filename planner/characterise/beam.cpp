@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -25,26 +26,31 @@ Along operator*(double factor, const Along& a) {
   return {factor * a[0], factor * a[1], factor * a[2], factor * a[3]};
 }
 
-/// The strip with this slope angle at its tip, from the tip inwards; classical fourth-order Runge-Kutta steps.
+/// One classical fourth-order Runge-Kutta step along the strip, from the tip inwards.
+/// @param from_tip  where it starts [m].
+Along step_inwards(const BendingLaw& law, double load, double from_tip, double step, const Along& at) {
+  const auto rate = [&](double s, const Along& a) -> Along {
+    return {-law(a[1]), load * s * std::cos(a[0]), -std::cos(a[0]), std::sin(a[0])};
+  };
+  const Along a = rate(from_tip, at), b = rate(from_tip + step / 2, at + step / 2 * a),
+              c = rate(from_tip + step / 2, at + step / 2 * b), d = rate(from_tip + step, at + step * c);
+  return at + step / 6 * (a + 2.0 * b + 2.0 * c + d);
+}
+
+/// The strip with this slope angle at its tip.
 /// @param clamp_angle  that it has at the other end, its smallest one.
 StripAtRest integrate(const BendingLaw& law, double length, double load, double tip_angle,
                       double& clamp_angle) {
   const double step = length / kSteps;
-  const auto rate = [&](double from_tip, const Along& a) -> Along {
-    return {-law(a[1]), load * from_tip * std::cos(a[0]), -std::cos(a[0]), std::sin(a[0])};
-  };
   StripAtRest strip;
   Along at{tip_angle, 0, 0, 0};
   clamp_angle = tip_angle;
   for (int k = 0; k <= kSteps; ++k) {
-    const double s = k * step;
     strip.places.emplace_back(at[2], at[3]);
     strip.curvature.push_back(law(at[1]));
     strip.moment.push_back(at[1]);
     clamp_angle = std::min(clamp_angle, at[0]);  // a strip that turns back is bent too much all the same
-    const Along a = rate(s, at), b = rate(s + step / 2, at + step / 2 * a),
-                c = rate(s + step / 2, at + step / 2 * b), d = rate(s + step, at + step * c);
-    at = at + step / 6 * (a + 2.0 * b + 2.0 * c + d);
+    at = step_inwards(law, load, k * step, step, at);
   }
   const Eigen::Vector2d clamp = strip.places.back();
   for (Eigen::Vector2d& place : strip.places) place -= clamp;
@@ -52,6 +58,27 @@ StripAtRest integrate(const BendingLaw& law, double length, double load, double 
   std::reverse(strip.curvature.begin(), strip.curvature.end());
   std::reverse(strip.moment.begin(), strip.moment.end());
   return strip;
+}
+
+/// Length and drop of a linear strip in its own unit of length, (D / load)^(1/3), in which a slope angle at the tip
+/// alone tells all the rest: where the strip is horizontal, there is its clamp. Infinite beyond `kLongest`.
+struct OwnUnits {
+  double length = 0, drop = 0;
+};
+constexpr double kLongest = 10;  // in that unit: hangs down straight, a tip of 1e-9 rad off the vertical
+OwnUnits linear_strip(double tip_angle) {
+  const BendingLaw law = linear_bending(1);
+  const double step = std::cbrt(6 * tip_angle) / kSteps;  // no strip with this angle is shorter
+  Along at{tip_angle, 0, 0, 0};
+  double from_tip = 0;
+  for (;; from_tip += step) {
+    if (from_tip > kLongest) return {std::numeric_limits<double>::infinity(), 0};
+    const Along next = step_inwards(law, 1, from_tip, step, at);
+    if (next[0] <= 0) break;
+    at = next;
+  }
+  const double last = bisect(0, step, [&](double part) { return step_inwards(law, 1, from_tip, part, at)[0] <= 0; });
+  return {from_tip + last, step_inwards(law, 1, from_tip, last, at)[3]};
 }
 
 /// Share of each knot in a piecewise linear function at `at`; the end's beyond the ends. @param knots  increasing.
@@ -98,16 +125,13 @@ StripAtRest strip_at_rest(const BendingLaw& law, double length, double load) {
 double stiffness_of(double tip, double length, double load) {
   if (!(tip > 0 && tip < length))
     throw std::invalid_argument("stiffness_of: the drop must lie between 0 and the length");
-  const auto drop = [&](double logarithm) {
-    return strip_at_rest(linear_bending(std::exp(logarithm)), length, load).tip();
-  };
-  // The drop of a stiff strip is load length^4 / (8 D).
-  const double middle = std::log(load * std::pow(length, 4) / (8 * tip));
-  constexpr double kSoftest = 5, kStiffest = 1;  // orders of e beside it; softer strips hang down straight
-  if (drop(middle - kSoftest) < tip)
+  const OwnUnits strip = linear_strip(bisect(0, 0.5 * std::numbers::pi, [&](double tip_angle) {
+    const OwnUnits tried = linear_strip(tip_angle);
+    return tried.length > kLongest || tried.drop / tried.length >= tip / length;
+  }));
+  if (strip.length > kLongest)
     throw std::invalid_argument("stiffness_of: a strip that drops so far hangs down straight");
-  return std::exp(bisect(middle - kSoftest, middle + kStiffest,
-                         [&](double logarithm) { return drop(logarithm) <= tip; }));
+  return load * std::pow(length / strip.length, 3);
 }
 
 BendingLaw bending_law_of_profile(const std::vector<Eigen::Vector2d>& places, double load, int pieces) {
