@@ -86,25 +86,43 @@ double BendingModel::scale_of(double drop) const {
 }
 
 BendingModel bending_model(Fabric fabric, const Curve& master, double length, double width, double gravity,
-                           int section_points, int threads) {
-  BendingModel model;
-  for (int k = 0; k < kStrips; ++k)
-    model.scale.push_back(kSmallestScale *
-                          std::pow(kLargestScale / kSmallestScale, double(k) / (kStrips - 1)));
-  model.tip.resize(kStrips);
+                           int section_points, int threads, const std::vector<double>& sought) {
   fabric.tension = fabric.tension.slowest();
   fabric.shear = fabric.shear.slowest();
-  parallel_for(
-      kStrips,
-      [&](int k) {
-        model.tip[size_t(k)] =
-            simulated_drop(fabric, scaled(master, model.scale[size_t(k)]), length, width, gravity, section_points);
-      },
-      threads);
-  for (int k = 1; k < kStrips; ++k) {
-    if (!(model.tip[size_t(k)] < model.tip[size_t(k) - 1]))
-      throw NotFinished("the bending model: a stiffer strip drops further; its mesh is too coarse");
+  BendingModel model;
+  const auto add = [&](const std::vector<double>& scales) {
+    std::vector<double> tips(scales.size());
+    parallel_for(
+        int(scales.size()),
+        [&](int k) {
+          tips[size_t(k)] =
+              simulated_drop(fabric, scaled(master, scales[size_t(k)]), length, width, gravity, section_points);
+        },
+        threads);
+    for (size_t k = 0; k < scales.size(); ++k) {
+      const auto at = std::lower_bound(model.scale.begin(), model.scale.end(), scales[k]);
+      model.tip.insert(model.tip.begin() + (at - model.scale.begin()), tips[k]);
+      model.scale.insert(at, scales[k]);
+    }
+    for (size_t k = 1; k < model.tip.size(); ++k) {
+      if (!(model.tip[k] < model.tip[k - 1]))
+        throw NotFinished("the bending model: a stiffer strip drops further; its mesh is too coarse");
+    }
+  };
+  std::vector<double> scales;
+  for (int k = 0; k < kStrips; ++k)
+    scales.push_back(kSmallestScale * std::pow(kLargestScale / kSmallestScale, double(k) / (kStrips - 1)));
+  add(scales);
+  constexpr double kNear = 1e-3;  // of a scale: a strip there is near enough
+  scales.clear();
+  for (const double drop : sought) {
+    const double scale = model.scale_of(drop);
+    const auto near = [scale](double other) { return std::abs(other - scale) < kNear * scale; };
+    if (std::none_of(model.scale.begin(), model.scale.end(), near) &&
+        std::none_of(scales.begin(), scales.end(), near))
+      scales.push_back(scale);
   }
+  add(scales);
   return model;
 }
 
@@ -113,18 +131,23 @@ CompressionLaw compression_law(const TipHistory& history, const Fabric& fabric, 
   if (history.time.empty() || history.time.front() > kFirstTime)
     throw NotFinished(fmt::format("the cantilever's history starts after {} s", kFirstTime));
   CompressionLaw law;
-  law.master = master_compression(fabric.tension.slowest());
-  law.model = bending_model(fabric, law.master, history.length, history.width, gravity, section_points,
-                            threads);
-  std::vector<double> time, strain;
-  for (size_t k = 0; k < history.time.size(); ++k) {
-    if (history.time[k] > 0 && history.root_strain[k] > 0)
-      time.push_back(history.time[k]), strain.push_back(history.root_strain[k]);
-  }
-  const DoublePowerLaw strains = fit_double_power(time, strain);
   const std::vector<double> tips = not_decreasing(history.tip, std::vector<double>(history.tip.size(), 1));
   law.static_tip = tips.back();
   law.first_tip = value_between(history.time, tips, kFirstTime);
+  law.master = master_compression(fabric.tension.slowest());
+  law.model = bending_model(fabric, law.master, history.length, history.width, gravity, section_points, threads,
+                            {law.first_tip, law.static_tip});
+  const double load = gravity * fabric.areal_density;
+  std::vector<double> time, strain;  // outside at the clamp
+  for (size_t k = 0; k < tips.size(); ++k) {
+    if (!(history.time[k] > 0 && tips[k] <= law.model.tip.front() && tips[k] >= law.model.tip.back())) continue;
+    const BendingLaw bending = section_bending(
+        fabric.tension.slowest(), scaled(law.master, law.model.scale_of(tips[k])), fabric.thickness);
+    time.push_back(history.time[k]);
+    strain.push_back(0.5 * fabric.thickness * strip_at_rest(bending, history.length, load).curvature.front());
+  }
+  const DoublePowerLaw strains = fit_double_power(time, strain);
+  law.largest_strain = *std::max_element(strain.begin(), strain.end());
   const double slowest = law.model.scale_of(law.static_tip), fastest = law.model.scale_of(law.first_tip);
   std::vector<double> logarithms;
   for (const double scale : law.model.scale) logarithms.push_back(std::log(scale));
@@ -143,7 +166,6 @@ CompressionLaw compression_law(const TipHistory& history, const Fabric& fabric, 
           "{:.3g} s; its pictures are too coarse, or too few",
           law.rates.back(), at));
   }
-  const double load = gravity * fabric.areal_density;
   law.stiffness = stiffness_of(law.static_tip, history.length, load);
   law.frequency = strip_frequency(law.stiffness, fabric.areal_density, history.length);
   law.alpha = 2 * law.frequency;

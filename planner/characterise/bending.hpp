@@ -12,9 +12,8 @@ namespace drapeplan {
 
 /// A strip on its way down.
 struct TipHistory {
-  double length = 0, width = 0;     ///< free length and width [m]
-  std::vector<double> time, tip;    ///< [s], drop of the tip [m]
-  std::vector<double> root_strain;  ///< outside, at 0.1 % of the length, > 0 [-]
+  double length = 0, width = 0;   ///< free length and width [m]
+  std::vector<double> time, tip;  ///< [s], drop of the tip [m]
 };
 
 /// A strip that is let go, clamped on its left: a case whose fidelity "report" has cells of a quarter of its width.
@@ -35,18 +34,21 @@ struct BendingModel {
   [[nodiscard]] double scale_of(double tip) const;
 };
 
-/// Simulates twelve strips with scales from 0.02 to 10 side by side.
+/// Simulates twelve strips with scales from 0.02 to 10 side by side, and one more for each drop that is sought: between
+/// two of the twelve the drop is known to some percent only.
 /// @param fabric  with tension; its compression is replaced.  @param gravity  [m/s^2].  @param section_points  of the
 /// simulations: a curve that breaks is seen at few points only, which makes strips softer or stiffer than they are.
-/// @throws NotFinished if one of them does not come to rest.
+/// @param sought  drops [m].
+/// @throws NotFinished if one of them does not come to rest, or if a drop that is sought lies beyond those of the twelve.
 BendingModel bending_model(Fabric fabric, const Curve& master, double length, double width, double gravity,
-                           int section_points, int threads);
+                           int section_points, int threads, const std::vector<double>& sought);
 
 struct CompressionLaw {
   Curve master;
   std::vector<double> factors;  ///< of the master, slowest rate first
   std::vector<double> rates;    ///< of the strain [1/s]; the first is that of rest, 1e-15
   std::vector<double> times;    ///< at which the strip had the drop of each [s]
+  double largest_strain = 0;    ///< outside at the clamp, of the strip at rest [-]
   BendingModel model;
   double first_tip = 0;         ///< at 0.4 s [m]
   double static_tip = 0;        ///< [m]
@@ -56,8 +58,10 @@ struct CompressionLaw {
 };
 
 /// Six curves: the first from the drop at 0.4 s, the last from the drop at rest, with a rate of 1e-15/s; four
-/// with factors at equal distances between. The rate of each is that of the strain at the root at the time at
-/// which the strip had the drop that belongs to the factor. Nothing is extrapolated.
+/// with factors at equal distances between. The rate of each is that of the strain outside at the clamp at the time at
+/// which the strip had the drop that belongs to the factor. Nothing is extrapolated. [Krogh] takes this strain from the
+/// curvature of the picture's midline, which is least certain at the clamp; here it is that of the strip at rest with
+/// the factor of each drop, since the strip creeps: rates that were too low made curves 16 % too stiff.
 /// @param history  that starts at 0.4 s or before; its largest drop is taken to be that at rest.
 /// @throws NotFinished if the history does not span this.
 CompressionLaw compression_law(const TipHistory& history, const Fabric& fabric, double gravity, int section_points,

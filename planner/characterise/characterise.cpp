@@ -62,7 +62,7 @@ CurveFields shear_fields(const ShearLaw& law, const std::string& what) {
   return fields;
 }
 
-/// The strip's history: of pictures its shapes, of a table the shapes of linear strips with the same drop.
+/// The strip's history: of pictures its shapes, of a table its drops.
 StripHistory history_of(const CantileverTest& test, const Tests& tests) {
   constexpr double kRoot = 0.001;  // of the length, where [Krogh] takes the strain
   const double load = tests.gravity * tests.areal_density;
@@ -75,18 +75,15 @@ StripHistory history_of(const CantileverTest& test, const Tests& tests) {
     history.shapes.push_back(shape);
     history.tips.time.push_back(frame.time);
     history.tips.tip.push_back(shape.tip());
-    history.tips.root_strain.push_back(outer_strain(shape, kRoot, tests.thickness));
+    history.root_strain.push_back(outer_strain(shape, kRoot, tests.thickness));
     history.shear_modulus.push_back(
         transverse_shear_modulus(shape.slope(0), test.length, load, tests.thickness));
   }
   for (size_t k = 0; k < test.table.rows(); ++k) {
     const double tip = test.table[TestQuantity::deflection][k];
     if (!(tip > 0 && tip < test.length)) continue;
-    const double stiffness = stiffness_of(tip, test.length, load);
-    const StripAtRest strip = strip_at_rest(linear_bending(stiffness), test.length, load);
     history.tips.time.push_back(test.table[TestQuantity::time][k]);
     history.tips.tip.push_back(tip);
-    history.tips.root_strain.push_back(0.5 * tests.thickness * strip.curvature.front());
   }
   return history;
 }
@@ -94,7 +91,7 @@ StripHistory history_of(const CantileverTest& test, const Tests& tests) {
 CurveFields compression_fields(const CompressionLaw& law, const StripHistory& strip, const Tests& tests) {
   CurveFields fields;
   fields.curve = law.master;
-  fields.valid_to = *std::max_element(strip.tips.root_strain.begin(), strip.tips.root_strain.end());
+  fields.valid_to = law.largest_strain;
   for (size_t k = 0; k < law.factors.size(); ++k)
     fields.rates.push_back({law.rates[k], law.factors[k], {}, {}});
   fields.source = fmt::format(
@@ -250,7 +247,7 @@ Characterisation characterise(const Tests& tests, int threads,
   }
   for (const CantileverTest& test : tests.cantilever) found.strips.push_back(history_of(test, tests));
   if (!found.strips.empty()) {
-    say("bending: twelve strips");
+    say("bending: fourteen strips");
     found.compression = compression_law(found.strips.front().tips, fabric_for_bending(tests, found),
                                         tests.gravity, tests.section_points, threads);
   }

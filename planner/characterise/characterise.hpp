@@ -21,6 +21,7 @@ struct StripHistory {
   std::string file;                    ///< of its tip, or of its last picture
   TipHistory tips;
   std::vector<StripShape> shapes;      ///< of pictures
+  std::vector<double> root_strain;     ///< at their times, outside at 0.1 % of the length, > 0 [-]
   std::vector<double> shear_modulus;   ///< at the times of the shapes, Eq. (14) [Pa]
 };
 

@@ -157,9 +157,9 @@ json strip_json(const StripHistory& strip) {
   json result{{"file", strip.file},
               {"length", strip.tips.length},
               {"time", strip.tips.time},
-              {"tip", strip.tips.tip},
-              {"root_strain", strip.tips.root_strain}};
+              {"tip", strip.tips.tip}};
   if (strip.shapes.empty()) return result;
+  result["root_strain"] = strip.root_strain;
   result["root_slope"] = json::array();
   for (const StripShape& shape : strip.shapes) result["root_slope"].push_back(shape.slope(0));
   result["transverse_shear_modulus"] = strip.shear_modulus;

@@ -18,28 +18,55 @@ std::vector<double> knots_to(double end, int count) {
   return knots;
 }
 
-/// Displacement at which the force begins: least squares of displacement = begin + c force^(1/p) over forces
-/// from the noise to a share of the largest one, for the power p that fits best.
-double begin_of_force(const std::vector<double>& way, const std::vector<double>& force) {
-  constexpr double kFrom = 0.005, kTo = 0.1;  // of the largest force
-  constexpr double kPowers = 41, kLowestPower = 1, kHighestPower = 3;
-  const double largest = *std::max_element(force.begin(), force.end());
-  double begin = way.front(), smallest = std::numeric_limits<double>::infinity();
+/// Standard deviation of what scatters from row to row, by second differences; the median, since a curve may jump.
+double noise_of(const std::vector<double>& values) {
+  std::vector<double> bends;
+  for (size_t k = 2; k < values.size(); ++k) bends.push_back(std::abs(values[k] - 2 * values[k - 1] + values[k - 2]));
+  if (bends.empty()) return 0;
+  std::nth_element(bends.begin(), bends.begin() + std::ptrdiff_t(bends.size() / 2), bends.end());
+  constexpr double kMedian = 0.6745;  // of a normal distribution's magnitude, in standard deviations
+  return bends[bends.size() / 2] / (kMedian * std::sqrt(6.0));
+}
+
+/// displacement = begin + c force^(1/p), by least squares, for the power p from 1 to 3 that fits best.
+struct Beginning {
+  double begin = 0, rms = std::numeric_limits<double>::infinity();  ///< [m], of what it misses [m]
+};
+Beginning fit_beginning(const std::vector<double>& way, const std::vector<double>& force, double from, double to) {
+  constexpr int kPowers = 41, kFewest = 8;  // rows
+  constexpr double kLowestPower = 1, kHighestPower = 3;
+  Beginning best;
   for (int k = 0; k < kPowers; ++k) {
     const double power = kLowestPower + (kHighestPower - kLowestPower) * k / (kPowers - 1);
     double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
-    for (size_t p = 0; p < way.size() && force[p] <= kTo * largest; ++p) {
-      if (force[p] < kFrom * largest) continue;
-      const double x = std::pow(force[p] / largest, 1 / power), y = way[p];
+    for (size_t p = 0; p < way.size() && force[p] <= to; ++p) {
+      if (force[p] < from) continue;
+      const double x = std::pow(force[p] / to, 1 / power), y = way[p] - way.front();
       n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y, syy += y * y;
     }
     const double spread = sxx - sx * sx / n;
-    if (n < 3 || !(spread > 0)) return way.front();
+    if (n < kFewest || !(spread > 0)) return best;
     const double slope = (sxy - sx * sy / n) / spread;
-    const double missed = syy - sy * sy / n - slope * slope * spread;
-    if (missed < smallest) smallest = missed, begin = (sy - slope * sx) / n;
+    const double missed = std::sqrt(std::max(0.0, syy - sy * sy / n - slope * slope * spread) / n);
+    if (missed < best.rms) best = {way.front() + (sy - slope * sx) / n, missed};
   }
-  return begin;
+  return best;
+}
+
+/// Displacement at which the force begins, from forces between the noise and the largest share of the whole force
+/// over which one power fits as well as over the smallest.
+double begin_of_force(const std::vector<double>& way, const std::vector<double>& force) {
+  constexpr double kFrom = 0.001, kTo[] = {0.01, 0.02, 0.05, 0.1};  // of the largest force
+  constexpr double kNoises = 5, kAsWell = 1.5;                      // standard deviations; times the r.m.s. miss
+  const double largest = *std::max_element(force.begin(), force.end());
+  const double from = std::max(kFrom * largest, kNoises * noise_of(force));
+  Beginning best;
+  for (const double to : kTo) {
+    const Beginning wider = fit_beginning(way, force, from, to * largest);
+    if (std::isfinite(best.rms) && wider.rms > kAsWell * best.rms) break;
+    if (std::isfinite(wider.rms)) best = {wider.begin, std::min(best.rms, wider.rms)};
+  }
+  return std::isfinite(best.rms) ? best.begin : way.front();
 }
 
 /// The rows up to the largest force: what follows is a specimen that fails, or a machine that turns back.
@@ -66,7 +93,7 @@ StrainPoints points_of(const StripTest& test, const MonotoneCubic* machine, doub
 
 /// The curve of all specimens of one rate, and how far they are from it.
 void fit_curve(TensionLaw& law) {
-  constexpr int kKnots = 20;
+  constexpr int kKnots = 40;
   std::vector<double> strain, stress;
   law.valid_to = std::numeric_limits<double>::infinity();
   for (const StrainPoints& one : law.specimens) {

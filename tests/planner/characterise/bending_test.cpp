@@ -16,11 +16,10 @@ Fabric shipped_fabric() {
 
 /// A strip that drops to 95 mm over minutes, as measured by [Krogh].
 TipHistory history() {
-  TipHistory strip{.length = 0.15, .width = 0.025, .time = {}, .tip = {}, .root_strain = {}};
+  TipHistory strip{.length = 0.15, .width = 0.025, .time = {}, .tip = {}};
   for (double t = 0.2; t < 360; t *= 1.25) {
     strip.time.push_back(t);
     strip.tip.push_back(0.095 - 0.045 * std::pow(0.4 / t, 0.5));
-    strip.root_strain.push_back(0.0025 * std::pow(t, 0.15));
   }
   strip.tip.back() = 0.095;
   return strip;
