@@ -61,7 +61,8 @@ struct CompressionLaw {
 /// with factors at equal distances between. The rate of each is that of the strain outside at the clamp at the time at
 /// which the strip had the drop that belongs to the factor. Nothing is extrapolated. [Krogh] takes this strain from the
 /// curvature of the picture's midline, which is least certain at the clamp; here it is that of the strip at rest with
-/// the factor of each drop, since the strip creeps: rates that were too low made curves 16 % too stiff.
+/// the factor of each drop, since the strip creeps: a midline reads rates too low, which makes curves up to 16 % too
+/// stiff.
 /// @param history  that starts at 0.4 s or before; its largest drop is taken to be that at rest.
 /// @throws NotFinished if the history does not span this.
 CompressionLaw compression_law(const TipHistory& history, const Fabric& fabric, double gravity, int section_points,
