@@ -12,6 +12,7 @@
 #include "planner/base/text.hpp"
 #include "planner/cli/cli.hpp"
 #include "planner/cli/process.hpp"
+#include "planner/drape/acceptance.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/report/run_files.hpp"
 #include "planner/search/finalists.hpp"
@@ -133,6 +134,7 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
   add_scores(result.best.score, result.best.other, best);
   best["warnings"] = range_warnings(problem.definition().material_notes, result.best.score);
   best["fidelity"] = search.best_fidelity;
+  best["acceptance"] = acceptance_json(acceptance_of(problem, result.best, search.best_fidelity));
   if (result.best.score.valid) best["schedule"] = "schedule.json";
   if (result.design) best["design"] = design_json(result);
   return {{"case", problem.definition().name},
@@ -153,6 +155,7 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
           {"interrupted", search.interrupted},
           {"beats_baselines", search.beats_baselines},
           {"message", search.message},
+          {"verdict", verdict_text(problem, result)},
           {"force", best_force_text(problem, result)},
           {"evaluations", search.evaluations},
           {"failed_evaluations", search.failed_evaluations},
@@ -178,7 +181,8 @@ void print_start(const DrapeProblem& problem) {
 
 std::string result_text(const DrapeProblem& problem, const PlanResult& result,
                         const std::filesystem::path& folder) {
-  std::string text = fmt::format("\n{}\n{}\n", comparison_table(problem, result), result.search.message);
+  std::string text = fmt::format("\n{}\n\n{}\n{}\n", verdict_text(problem, result),
+                                 comparison_table(problem, result), result.search.message);
   if (const std::string force = best_force_text(problem, result); !force.empty()) text += force + "\n";
   text += fmt::format("{} evaluations ({} failed) in {} s", result.search.evaluations,
                       result.search.failed_evaluations, std::llround(result.wall_seconds));

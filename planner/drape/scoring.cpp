@@ -77,23 +77,31 @@ struct OneWay {
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
 };
 
-/// Distance of `line` from `other`, sampled along `line`; the mean square by the trapezoidal rule.
-OneWay one_way(const Points& line, const Points& other) {
-  OneWay result{-1, 0, {0, 0, 0}, {0, 0, 0}};
-  double length = 0, integral = 0;
+/// Calls visit(from, to, weight) at places along `line`: each with its nearest place on `other` and the length that it
+/// stands for by the trapezoidal rule.
+template <class Visit>
+void sample_distances(const Points& line, const Points& other, const Visit& visit) {
   for (size_t k = 1; k < line.size(); ++k) {
     const double segment = (line[k] - line[k - 1]).norm();
     const int parts = std::max(1, int(std::ceil(segment / kEdgeSample)));
     for (int part = 0; part <= parts; ++part) {
       const Eigen::Vector3d from = line[k - 1] + (line[k] - line[k - 1]) * (double(part) / parts);
-      const Eigen::Vector3d to = nearest_on_polyline(from, other).place;
-      const double distance = (to - from).norm();
-      if (distance > result.max) result = {distance, 0, from, to};
       const double share = part == 0 || part == parts ? 0.5 : 1.0;
-      integral += share * distance * distance * segment / parts;
+      visit(from, nearest_on_polyline(from, other).place, share * segment / parts);
     }
-    length += segment;
   }
+}
+
+/// Distance of `line` from `other`.
+OneWay one_way(const Points& line, const Points& other) {
+  OneWay result{-1, 0, {0, 0, 0}, {0, 0, 0}};
+  double length = 0, integral = 0;
+  sample_distances(line, other, [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to, double weight) {
+    const double distance = (to - from).norm();
+    if (distance > result.max) result = {distance, 0, from, to};
+    integral += distance * distance * weight;
+    length += weight;
+  });
   result.rms = length > 0 ? std::sqrt(integral / length) : 0;
   return result;
 }
@@ -220,6 +228,16 @@ BoundaryOffset boundary_offset(const std::vector<Eigen::Vector3d>& edge,
   const OneWay back = one_way(boundary, edge);
   if (out.max >= back.max) return {out.max, out.rms, out.from, out.to};
   return {back.max, out.rms, back.to, back.from};
+}
+
+double share_beyond(const std::vector<Eigen::Vector3d>& edge, const std::vector<Eigen::Vector3d>& boundary,
+                    double limit) {
+  double length = 0, beyond = 0;
+  sample_distances(edge, boundary, [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to, double weight) {
+    if ((to - from).norm() > limit) beyond += weight;
+    length += weight;
+  });
+  return length > 0 ? beyond / length : 0;
 }
 
 std::vector<Eigen::Vector3d> ply_edge(const Mesh& mesh, const Snapshot& end, double thickness) {

@@ -59,6 +59,10 @@ struct BoundaryOffset {
 BoundaryOffset boundary_offset(const std::vector<Eigen::Vector3d>& edge,
                                const std::vector<Eigen::Vector3d>& boundary);
 
+/// Share of the edge's length that is farther than `limit` [m] from the boundary [-]; arguments as above.
+double share_beyond(const std::vector<Eigen::Vector3d>& edge, const std::vector<Eigen::Vector3d>& boundary,
+                    double limit);
+
 /// The ply's deformed edge on its underside, closed [m]: a perfectly draped ply lies on the prescribed
 /// boundary.
 std::vector<Eigen::Vector3d> ply_edge(const Mesh& mesh, const Snapshot& end, double thickness);

@@ -40,7 +40,7 @@ struct ReportTable {
 struct PlanReport {
   std::string title;            ///< name of the case
   std::string description;      ///< what is draped, one or two sentences
-  std::string verdict;          ///< what came out, one sentence
+  std::string verdict;          ///< good enough or not, and what came out
   std::string reach;            ///< what the rig can reach at all, one or two sentences
   std::vector<ReportRow> rows;  ///< baselines first, the optimum last
   std::vector<ReportTable> tables;

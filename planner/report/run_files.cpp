@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -13,6 +14,7 @@
 #include "planner/base/json_text.hpp"
 #include "planner/base/text.hpp"
 #include "planner/case/file.hpp"
+#include "planner/drape/acceptance.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/drape/scoring.hpp"
 #include "planner/report/charts.hpp"
@@ -120,6 +122,12 @@ std::string design_note(const PlanResult& result) {
 }
 
 }  // namespace
+
+std::string verdict_text(const DrapeProblem& problem, const PlanResult& result) {
+  const Acceptance acceptance = acceptance_of(problem, result.best, result.search.best_fidelity);
+  const std::string limit = out_of_reach_text(problem, acceptance);
+  return acceptance_text(acceptance) + (limit.empty() ? "" : " " + limit);
+}
 
 std::string best_force_text(const DrapeProblem& problem, const PlanResult& result) {
   const Case& definition = problem.definition();
@@ -239,7 +247,9 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   PlanReport report;
   report.title = problem.definition().name;
   report.description = problem.definition().description;
-  report.verdict = search.message;
+  std::string compared = search.message;  // a clause: "the optimised sequence ..."
+  if (!compared.empty()) compared.front() = char(std::toupper(static_cast<unsigned char>(compared.front())));
+  report.verdict = fmt::format("{} {}.", verdict_text(problem, result), compared);
   report.reach = explain_reach(problem.reach_problem(), problem.reach()) + " " + problem.ply_floor().meaning;
   if (const std::string force = best_force_text(problem, result); !force.empty()) report.reach += " " + force;
   report.rows = rows_of(problem, result);

@@ -39,6 +39,9 @@ inline constexpr const char* kDesignFile = "design.json";
 /// schedules of the baselines, contour picture, charts, VTU and PVD, report.html.
 void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result);
 
+/// Whether the best drape is good enough, by the tolerances of its case; if not, whether another schedule could be.
+std::string verdict_text(const DrapeProblem& problem, const PlanResult& result);
+
 /// What the limit of force has to do with the best sequence; empty if no actuator was at it.
 std::string best_force_text(const DrapeProblem& problem, const PlanResult& result);
 
