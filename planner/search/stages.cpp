@@ -21,8 +21,9 @@ namespace drapeplan {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// NLopt searches side by side, from as many of the screened waves.
-constexpr int kLocalSearches = 2;
+/// NLopt searches side by side, from as many of the screened waves: waves end in different valleys, and not in the order
+/// in which they begin. Each has twice what COBYLA needs to look into every direction once.
+constexpr int kFewestSearches = 2, kMostSearches = 6;
 /// Shares of the budget after the waves at which parts of the search end: COBYLA and the composite search
 /// over smooth strokes, and the latter over all grippers at the cheaper fidelities (each in so many equal
 /// parts, with a check after each).
@@ -210,7 +211,8 @@ void StagedSearch::search_smooth() {
   std::vector<Trial> waves = trials_[fidelity];
   std::stable_sort(waves.begin(), waves.end(), better);
   const int budget = budget_.affords(kCobylaEnd * (1 - begin_), fidelity);
-  const int count = std::min(kLocalSearches, int(waves.size()));
+  const int each = 2 * (int(smooth_.dimension()) + 1);
+  const int count = std::min(std::clamp(budget / each, kFewestSearches, kMostSearches), int(waves.size()));
   std::vector<NloptStart> starts;
   for (int k = 0; k < count; ++k) {
     starts.push_back({.x = smooth_.encode(waves[size_t(k)].strokes), .evaluations = (budget + k) / count});
