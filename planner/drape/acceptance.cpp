@@ -28,7 +28,7 @@ double share_above(const Mesh& mesh, const std::vector<double>& gap, double allo
 }
 
 std::string missed(const Tolerance& tolerance) {
-  return fmt::format("{} is {:.2f} mm where {:g} mm are allowed ({:.2g} % {})", tolerance.what,
+  return fmt::format("{} is {:.2f} mm where {:g} mm is allowed ({:.2g} % {})", tolerance.what,
                      1e3 * tolerance.value, 1e3 * tolerance.allowed, 1e2 * tolerance.share, tolerance.beyond);
 }
 
