@@ -73,7 +73,7 @@ for place in pipe /dev/zero; do
   denied 2 "$place: cannot be read as an image: it is no regular file" characterise tests.json --out refused \
     --set 'cantilever=[{"length": "150 mm", "width": "25 mm", "scale": "1 mm", "frames": [{"file": "'$place'", "time": "1 s"}]}]'
   denied 2 '"'$place'" cannot be read: it is no regular file' characterise tests.json --set assumed=$place --out refused
-  denied 2 '"'$place'" cannot be read: it is no regular file' check "$quick" --set material=$place
+  denied 2 'cannot be read: it is no regular file' check "$quick" --set "material=$(realpath $place)"
 done
 denied 2 '/dev/zero: cannot be read: it is larger than 256 MB' check /dev/zero
 denied 2 'no scene' stress --only 'no such scene' --out refused
