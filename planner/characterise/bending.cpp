@@ -139,8 +139,8 @@ CompressionLaw compression_law(const TipHistory& history, const Fabric& fabric, 
   if (history.time.empty() || history.time.front() > kFirstTime)
     throw NotFinished(fmt::format("the cantilever's history starts after {} s", kFirstTime));
   if (history.time.size() < kCurves)
-    throw NotFinished(fmt::format("the cantilever was seen at {} times; its {} curves need as many", history.time.size(),
-                                  kCurves));
+    throw NotFinished(
+        fmt::format("the cantilever was seen at {} times; its {} curves need as many", history.time.size(), kCurves));
   CompressionLaw law;
   const std::vector<double> tips = not_decreasing(history.tip, std::vector<double>(history.tip.size(), 1));
   law.static_tip = tips.back();

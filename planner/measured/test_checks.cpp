@@ -33,7 +33,7 @@ class Checks {
     const std::vector<double>& way = table_[moves];
     for (size_t k = 1; k < table_.rows(); ++k) {
       if (table_.has(TestQuantity::time) && !(table_[TestQuantity::time][k] > table_[TestQuantity::time][k - 1]))
-        return fail(k, TestQuantity::time, "does not increase: rows are not in their order");
+        return fail(k, TestQuantity::time, "does not increase: rows are not in their order, or columns are swapped");
       if (way[k] < way[k - 1] - noise * range_of_way(way))
         return fail(k, moves,
                     fmt::format("jumps back from {:.4g} to {:.4g} mm: rows are not in their order, or the "
@@ -73,8 +73,8 @@ class Checks {
     const auto largest = size_t(std::max_element(force.begin(), force.end()) - force.begin());
     if (!(force[largest] > limits.least_force))
       return fail(largest, TestQuantity::force,
-                  fmt::format("{:.3g} N is the largest one, but {:.2g} N is no force of a test: the wrong sign, unit or "
-                              "column? Pulling forces are > 0",
+                  fmt::format("{:.3g} N is the largest one, but {:.2g} N is no force of a test: the wrong sign, unit "
+                              "or column? Pulling forces are > 0",
                               force[largest], limits.least_force));
     if (force[largest] > limits.most_force)
       return fail(largest, TestQuantity::force,
@@ -176,7 +176,7 @@ std::vector<InputError> machine_faults(const TestTable& table, const std::string
 
 std::vector<InputError> drop_faults(const TestTable& table, const std::string& file, double length) {
   Checks checks(table, file);
-  if (!checks.in_order(TestQuantity::deflection, kTipNoise) || !checks.hangs(length)) return std::move(checks.errors);
+  if (!checks.hangs(length) || !checks.in_order(TestQuantity::deflection, kTipNoise)) return std::move(checks.errors);
   const std::vector<double>&time = table[TestQuantity::time], &drop = table[TestQuantity::deflection];
   constexpr double kHalfway = 0.4;  // of the way, after half of the time: what creeps is further than this
   size_t half = 0;

@@ -222,7 +222,8 @@ class DataReader {
 
   /// Reads a table, and looks for faults of it as a whole.
   template <class Faults>
-  TestTable read(const std::string& name, const std::vector<WantedColumn>& wanted, size_t fewest, const Faults& faults) {
+  TestTable read(const std::string& name, const std::vector<WantedColumn>& wanted, size_t fewest,
+                 const Faults& faults) {
     TableReading reading = read_test_table(folder_ / name, wanted, fewest);
     if (reading.errors.empty()) reading.errors = faults(reading.table, (folder_ / name).string());
     errors_.insert(errors_.end(), reading.errors.begin(), reading.errors.end());

@@ -115,9 +115,11 @@ TEST(DamagedInput, SchedulesAreReadOrRefusedWithPlaces) {
 }
 
 TEST(DamagedInput, TablesAreFiniteOrRefusedWithTheirLine) {
-  const std::vector<WantedColumn> wanted{{TestQuantity::time}, {TestQuantity::displacement, true}, {TestQuantity::force, true}};
+  const std::vector<WantedColumn> wanted{
+      {TestQuantity::time}, {TestQuantity::displacement, true}, {TestQuantity::force, true}};
   std::string points = "Specimen,A 1\r\n\r\n\"Time\",\"Extension\",\"Load\"\r\n\"(s)\",\"(mm)\",\"(kN)\"\r\n";
-  std::string commas = "Notiz\nZeit [s];Standardweg [mm];Standardkraft [N]\n", tabs = "Load\tTime\tCrosshead\nN\tsec\tmm\n";
+  std::string commas = "Notiz\nZeit [s];Standardweg [mm];Standardkraft [N]\n";
+  std::string tabs = "Load\tTime\tCrosshead\nN\tsec\tmm\n";
   for (int k = 0; k < 12; ++k) {
     const std::string n = std::to_string(k);
     points += "\"" + n + ".5\",\"1e-" + n + "\",\"-0.0" + n + "\"\r\n";

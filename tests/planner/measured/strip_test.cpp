@@ -61,7 +61,8 @@ TEST(StripImage, ReadsAPgmFileAndSaysWhatIsWrong) {
     std::ofstream(file, std::ios::binary) << bytes;
     return reason([&] { (void)read_image(file); });
   };
-  EXPECT_NE(written("P5 # a comment\n900 600 255\n" + std::string(900 * 599, 'a')).find("it is cut off"), std::string::npos);
+  EXPECT_NE(written("P5 # a comment\n900 600 255\n" + std::string(900 * 599, 'a')).find("it is cut off"),
+            std::string::npos);
   EXPECT_NE(written("P5 30000 30000 255\nabc").find("it is cut off"), std::string::npos);
   EXPECT_NE(written("P5 900 600 65535\n" + std::string(2 * 900 * 600, 'a')).find("white is 65535; expected 255"),
             std::string::npos);

@@ -58,7 +58,8 @@ TEST(TestTable, ReadsWhatMachinesWrite) {
 TEST(TestTable, IsNotMisledBySeparatorsInNotes) {
   for (const char* note : {"Made by us; in May\n", "Made\tby us\n", "\"Made by us; in May\"\n"}) {
     const TableReading reading =
-        read(note + std::string("Extension (mm),Load (N)\n") + rows([](int k) { return std::to_string(k) + ",1.5,\n"; }));
+        read(note + std::string("Extension (mm),Load (N)\n") +
+             rows([](int k) { return std::to_string(k) + ",1.5,\n"; }));
     ASSERT_TRUE(reading.errors.empty()) << reading.errors.front().text();
     EXPECT_DOUBLE_EQ(reading.table[TestQuantity::force][4], 1.5);
   }
@@ -95,8 +96,8 @@ TEST(TestTable, SaysWhatIsWrongAndWhere) {
                 .find("\"1.234,5\" is no number"),
             std::string::npos);
   const std::string machine = "Extension [mm];Load [N]\n";
-  EXPECT_NE(error(machine + rows([](int k) { return k == 7 ? std::string("1.007;1\n") : std::to_string(k) + ",5;1\n"; }))
-                .find(":9: Extension: \"1.007\" has a decimal point, but line 2 a decimal comma"),
+  const auto mixed = [](int k) { return k == 7 ? std::string("1.007;1\n") : std::to_string(k) + ",5;1\n"; };
+  EXPECT_NE(error(machine + rows(mixed)).find(":9: Extension: \"1.007\" has a decimal point, but line 2 a decimal comma"),
             std::string::npos);
   EXPECT_NE(error("Extension (mm),Load (N)\n" + good + "1,5,2\n").find(":14: has 3 cells, but line 1 names 2 columns"),
             std::string::npos);
@@ -106,7 +107,8 @@ TEST(TestTable, SaysWhatIsWrongAndWhere) {
             std::string::npos);
   EXPECT_NE(error(std::string("Extension (mm),Load (N)\n1,\0001\n", 30)).find(":2: has a NUL byte"), std::string::npos);
   EXPECT_NE(error(std::string(5000, ',')).find(":1: has more than 1000 columns"), std::string::npos);
-  EXPECT_NE(error("Extension (mm),Load (N)\n" + good + std::string(5000, 'x') + "\x1b,1\n").find(std::string(40, 'x') + "..."),
+  EXPECT_NE(error("Extension (mm),Load (N)\n" + good + std::string(5000, 'x') + "\x1b,1\n")
+                .find(std::string(40, 'x') + "..."),
             std::string::npos);
 }
 
