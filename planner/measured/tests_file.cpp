@@ -23,6 +23,9 @@ constexpr double kLargestTension = 0.2;
 constexpr double kLargestStress = 2e10;  // [Pa]: no fibre bears more
 constexpr double kShareOfWeight = 0.01;  // of a specimen's own weight: a force that shows nothing of it
 constexpr double kLeastCellForce = 1e-3; // [N]: no load cell that holds steel shows less
+constexpr double kThinnest = 1e-6;       // [m]: thinner than a fibre
+constexpr double kLightest = 1e-4;       // [kg/m^2]: the lightest veils have 2e-3
+constexpr double kLeastGravity = 1e-3;   // [m/s^2]: nothing bends under it
 /// Simulated strips have cells of a share of their width: of longer ones nobody could wait for the end.
 constexpr double kLargestSlenderness = 50;
 
@@ -91,9 +94,9 @@ void visit_tests(FieldVisitor& v, Tests& tests) {
   v.field({"format", choice(format, {kTestsFormat}), "What this file is", Dimension::none, {}, true});
   v.field({"name", &tests.name, "What the material is called"});
   v.field({"source", &tests.source, "Who made the tests, where and when"});
-  v.field({"thickness", &tests.thickness, "Of the ply", Dimension::length, positive(0.05), true});
-  v.field({"areal_density", &tests.areal_density, "Mass per area", Dimension::areal_density, positive(100),
-           true});
+  v.field({"thickness", &tests.thickness, "Of the ply", Dimension::length, from(kThinnest, 0.05), true});
+  v.field({"areal_density", &tests.areal_density, "Mass per area", Dimension::areal_density,
+           from(kLightest, 100), true});
   v.list(object_list("compliance",
                      "Tests of a stiff specimen in the same clamps: their displacement is the machine's, and "
                      "is subtracted",
@@ -121,7 +124,8 @@ void visit_tests(FieldVisitor& v, Tests& tests) {
                      [&v](CantileverTest& test) { visit_cantilever(v, test); }));
   v.field({"transverse_shear_modulus", &tests.transverse_shear_modulus,
            "Chosen one; the page shows what the slopes at the clamp say", Dimension::stress, positive()});
-  v.field({"gravity", &tests.gravity, "Acceleration of the cantilevers", Dimension::acceleration, positive(100)});
+  v.field({"gravity", &tests.gravity, "Acceleration of the cantilevers", Dimension::acceleration,
+           from(kLeastGravity, 100)});
   v.field({"section_points", &tests.section_points,
            "Of simulated cantilevers, 3 or 5: those of the cases that will use the material (`fem.section_points`). "
            "Three see so little of a compression curve with a break that a strip of 150 mm drops 7 mm deeper",

@@ -84,7 +84,10 @@ within stdout /profile/0/curvature/8 5 15
 within stdout /profile/0/material/drop 0.03 0.08
 lacks stdout /compression /cantilever
 grep -q 'from the profile' shape/characterisation.html || fail "the page lacks the profile"
+for field in 'gravity=1e-320 m/s^2' 'thickness=1e-9 mm' 'areal_density=1e-300 g/m^2'; do
+  refuse "/${field%=*}: " characterise data/tests.json --set "$field"
+done
 refuse 'none.json: cannot be read' characterise none.json
 refuse 'is not tested' characterise data/tests.json --set assumed=null --set 'cantilever=[]'
 refuse 'must be given or assumed' characterise data/tests.json --set assumed=null
-finish 58
+finish 61
