@@ -1,6 +1,9 @@
 #include "planner/base/text.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -122,6 +125,45 @@ std::string markdown_cell(std::string_view text) {
   std::string cell;
   for (const char c : text) cell += (c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c));
   return cell;
+}
+
+FileText read_file(const std::filesystem::path& file, bool pipes) {
+  constexpr size_t kMost = size_t(256) << 20U, kPiece = size_t(1) << 16U;  // bytes
+  const auto reason = [](int error) { return std::generic_category().message(error); };
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return {{}, reason(errno)};
+  if (S_ISDIR(status.st_mode)) return {{}, "it is a folder"};
+  if (!S_ISREG(status.st_mode) && !pipes) return {{}, "it is no regular file"};
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
+  if (descriptor < 0) return {{}, reason(errno)};
+  FileText result;
+  ssize_t count = 1;
+  while (count != 0 && result.fault.empty()) {
+    const size_t before = result.text.size();
+    result.text.resize(before + kPiece);
+    count = ::read(descriptor, result.text.data() + before, kPiece);
+    if (count < 0 && errno != EINTR) result.fault = reason(errno);
+    result.text.resize(before + (count > 0 ? size_t(count) : 0));
+    if (result.text.size() > kMost) result.fault = "it is larger than 256 MB";
+  }
+  ::close(descriptor);
+  return result;
+}
+
+std::string shown(std::string_view text) {
+  constexpr size_t kMost = 40, kLongestCharacter = 4;  // characters, bytes
+  std::string clean;
+  size_t count = 0;
+  while (!text.empty() && count < kMost) {
+    const Character character = first_character(text.substr(0, kLongestCharacter));
+    const bool printable = character.bytes > 0 && character.code >= 0x20 && character.code != 0x7F &&
+                           !(character.code >= 0x80 && character.code < 0xA0);
+    const size_t bytes = std::max<size_t>(character.bytes, 1);
+    clean += printable ? text.substr(0, bytes) : kReplacement;
+    text.remove_prefix(bytes);
+    ++count;
+  }
+  return text.empty() ? clean : clean + "...";
 }
 
 void write_text(const std::filesystem::path& file, std::string_view text) {

@@ -30,6 +30,19 @@ std::string quoted_cell(std::string_view text);
 /// A cell of a Markdown table: | is escaped, and a new line becomes a blank.
 std::string markdown_cell(std::string_view text);
 
+/// What a file holds, or why it cannot be read.
+struct FileText {
+  std::string text;
+  std::string fault;  ///< "it is a folder", "Permission denied"; empty if it could be read
+};
+
+/// Reads a whole file of at most 256 MB. Devices are refused, and so are pipes, which may never end or begin.
+/// @param pipes  are read all the same: the user names the file on the command line, as in `check <(make_case)`.
+FileText read_file(const std::filesystem::path& file, bool pipes = false);
+
+/// A piece of an input as a message shows it: in UTF-8 without control characters, cut after 40 characters.
+std::string shown(std::string_view text);
+
 /// Writes a file by way of a temporary neighbour, so that no reader ever sees half of it.
 /// @throws NotFinished with the file and the reason.
 void write_text(const std::filesystem::path& file, std::string_view text);

@@ -230,7 +230,7 @@ void check_probes(const CaseFields& fields, FieldReader& reader) {
   }
 }
 
-/// Their names become parts of the names of files.
+/// Their names become parts of the names of files: profile_NAME.csv, .svg, and profile_NAME_heights.svg.
 void check_profiles(const CaseFields& fields, FieldReader& reader) {
   const auto plain = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_';
@@ -240,10 +240,13 @@ void check_profiles(const CaseFields& fields, FieldReader& reader) {
     const Profile& profile = fields.definition.profiles[k];
     const std::string pointer = fmt::format("/profiles/{}", k);
     if (reader.good(pointer + "/name")) {
-      if (profile.name.empty() || !std::all_of(profile.name.begin(), profile.name.end(), plain))
-        reader.fail(pointer + "/name", "is part of a file's name; allowed: letters, digits, - and _");
-      else if (!names.insert(profile.name).second)
-        reader.fail(pointer + "/name", "another profile has the same name");
+      constexpr size_t kLongest = 100;  // systems allow 255 bytes for the whole name of a file
+      if (profile.name.empty() || profile.name.size() > kLongest ||
+          !std::all_of(profile.name.begin(), profile.name.end(), plain))
+        reader.fail(pointer + "/name",
+                    fmt::format("is part of a file's name; allowed: letters, digits, - and _, up to {}", kLongest));
+      else if (!names.insert(profile.name).second || !names.insert(profile.name + "_heights").second)
+        reader.fail(pointer + "/name", "another profile has the same name, or its chart of heights has it");
     }
     if (!reader.good(pointer + "/from") || !reader.good(pointer + "/to")) continue;
     if ((profile.to - profile.from).norm() <= kSlack)

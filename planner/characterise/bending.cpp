@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "fem/mesh/foot.hpp"
 #include "fem/run/simulate.hpp"
@@ -51,13 +52,20 @@ Case falling_strip(const Fabric& fabric, double length, double width, double gra
   const BendingLaw law =
       section_bending(fabric.tension.slowest(), fabric.compression.slowest(), fabric.thickness);
   const double drop = strip_at_rest(law, length, load).tip();
+  double stiffness = 0;
+  try {
+    stiffness = stiffness_of(drop, length, load);
+  } catch (const std::invalid_argument&) {
+    throw NotFinished(fmt::format("a strip of {:g} mm of this material hangs down straight: no test of its bending",
+                                  1e3 * length));
+  }
   Case strip;
   strip.name = "strip";
   strip.material = fabric;
   strip.ply.width = length;
   strip.ply.height = width;
   strip.gravity = gravity;
-  strip.damping = 2 * strip_frequency(stiffness_of(drop, length, load), fabric.areal_density, length);
+  strip.damping = 2 * strip_frequency(stiffness, fabric.areal_density, length);
   strip.clamped = {Edge::left};
   FemOptions fem;
   constexpr double kCellsAcross = 3;  // four, as in cases/cantilever-150.json, drop by 0.03 mm less
@@ -130,6 +138,9 @@ CompressionLaw compression_law(const TipHistory& history, const Fabric& fabric, 
                                int threads) {
   if (history.time.empty() || history.time.front() > kFirstTime)
     throw NotFinished(fmt::format("the cantilever's history starts after {} s", kFirstTime));
+  if (history.time.size() < kCurves)
+    throw NotFinished(
+        fmt::format("the cantilever was seen at {} times; its {} curves need as many", history.time.size(), kCurves));
   CompressionLaw law;
   const std::vector<double> tips = not_decreasing(history.tip, std::vector<double>(history.tip.size(), 1));
   law.static_tip = tips.back();
@@ -146,6 +157,11 @@ CompressionLaw compression_law(const TipHistory& history, const Fabric& fabric, 
     time.push_back(history.time[k]);
     strain.push_back(0.5 * fabric.thickness * strip_at_rest(bending, history.length, load).curvature.front());
   }
+  constexpr size_t kFewestTimes = 4;  // of a double power
+  if (time.size() < kFewestTimes)
+    throw NotFinished(fmt::format("the cantilever has {} drops among those of the bending model, {:.1f} to {:.1f} mm; "
+                                  "its rates need {}",
+                                  time.size(), 1e3 * law.model.tip.back(), 1e3 * law.model.tip.front(), kFewestTimes));
   const DoublePowerLaw strains = fit_double_power(time, strain);
   law.largest_strain = *std::max_element(strain.begin(), strain.end());
   const double slowest = law.model.scale_of(law.static_tip), fastest = law.model.scale_of(law.first_tip);

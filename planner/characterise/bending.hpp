@@ -19,7 +19,7 @@ struct TipHistory {
 /// A strip that is let go, clamped on its left: a case whose fidelity "report" has cells of a quarter of its width.
 /// Its weight is damped as [Krogh] damps a strip (critically), by the drop at rest that a strip of this fabric has.
 /// @param length, width  free length and width [m].  @param gravity  [m/s^2].  @param section_points  of the fidelity.
-/// @throws std::invalid_argument for a strip so soft that it hangs down straight.
+/// @throws NotFinished for a strip so soft that it hangs down straight.
 Case falling_strip(const Fabric& fabric, double length, double width, double gravity, int section_points);
 
 /// The compression curve that is scaled: the slope of tension up to 0.1 % of strain, beyond it 0.5 GPa (the

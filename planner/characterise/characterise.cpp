@@ -88,6 +88,29 @@ StripHistory history_of(const CantileverTest& test, const Tests& tests) {
   return history;
 }
 
+/// Moment against curvature from a strip's shape at rest, beside the law of the material that was found.
+ProfileLaw profile_law_of(const CantileverTest& test, const Tests& tests, const Fabric& fabric) {
+  constexpr size_t kRowsPerPiece = 4, kMostPieces = 8;  // of the law: more pieces would follow noise
+  const std::vector<double>&x = test.table[TestQuantity::distance], &down = test.table[TestQuantity::deflection];
+  std::vector<Eigen::Vector2d> places;
+  for (size_t k = 0; k < x.size(); ++k) places.emplace_back(x[k] - x.front(), down.front() - down[k]);
+  const double load = tests.gravity * tests.areal_density;
+  ProfileLaw result;
+  result.file = test.profile;
+  result.length = test.length;
+  result.drop = -places.back().y();
+  result.law = bending_law_of_profile(places, load, int(std::min(x.size() / kRowsPerPiece, kMostPieces)));
+  const BendingLaw material =
+      section_bending(fabric.tension.slowest(), fabric.compression.slowest(), fabric.thickness);
+  if (material.strain.size() < 2) return result;
+  result.material_drop = strip_at_rest(material, test.length, load).tip();
+  for (const double moment : result.law.strain) {
+    result.material.strain.push_back(moment);
+    result.material.stress.push_back(material(moment));
+  }
+  return result;
+}
+
 CurveFields compression_fields(const CompressionLaw& law, const StripHistory& strip, const Tests& tests) {
   CurveFields fields;
   fields.curve = law.master;
@@ -245,13 +268,18 @@ Characterisation characterise(const Tests& tests, int threads,
     say("picture frame");
     found.frame = picture_frame_law(tests.picture_frame, shear);
   }
-  for (const CantileverTest& test : tests.cantilever) found.strips.push_back(history_of(test, tests));
+  for (const CantileverTest& test : tests.cantilever) {
+    if (test.profile.empty()) found.strips.push_back(history_of(test, tests));
+  }
   if (!found.strips.empty()) {
     say("bending: fourteen strips");
     found.compression = compression_law(found.strips.front().tips, fabric_for_bending(tests, found),
                                         tests.gravity, tests.section_points, threads);
   }
   found.material = material_of(tests, found);
+  for (const CantileverTest& test : tests.cantilever) {
+    if (!test.profile.empty()) found.profiles.push_back(profile_law_of(test, tests, fabric_of(found.material)));
+  }
   say("tests, simulated with the material");
   verify(tests, threads, found);
   return found;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "planner/characterise/beam.hpp"
 #include "planner/characterise/bending.hpp"
 #include "planner/characterise/shear.hpp"
 #include "planner/characterise/tension.hpp"
@@ -25,14 +26,26 @@ struct StripHistory {
   std::vector<double> shear_modulus;   ///< at the times of the shapes, Eq. (14) [Pa]
 };
 
+/// The bending law of a strip from its shape at rest, see bending_law_of_profile.
+struct ProfileLaw {
+  std::string file;
+  double length = 0;  ///< [m]
+  double drop = 0;    ///< of the tip [m]
+  BendingLaw law;     ///< curvature [1/m] over moment per width [N]
+  /// The law of the material that was found, at rest, up to the same moment; empty where its fibres have no curves.
+  BendingLaw material;
+  double material_drop = 0;  ///< of the strip with that law [m]
+};
+
 struct Characterisation {
   std::optional<TensionLaw> tension;
   std::optional<ShearLaw> bias;   ///< from bias extension
   std::optional<ShearLaw> frame;  ///< from picture frames
-  std::vector<StripHistory> strips;  ///< of all cantilevers
-  std::optional<CompressionLaw> compression;  ///< from the first cantilever
+  std::vector<StripHistory> strips;   ///< of all cantilevers that were seen in time
+  std::vector<ProfileLaw> profiles;   ///< of those whose shape at rest was measured
+  std::optional<CompressionLaw> compression;  ///< from the first of `strips`
   MaterialFields material;        ///< shear: of the bias extension if there is one, else of the frames
-  /// Of tension and bias extension one specimen of each rate that gave a curve, and all cantilevers.
+  /// Of tension and bias extension one specimen of each rate that gave a curve, and all `strips`.
   std::vector<Verification> verifications;
 };
 

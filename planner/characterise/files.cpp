@@ -126,6 +126,27 @@ ReportFigure strip_figure(const StripHistory& strip) {
   return {text, line_chart(chart)};
 }
 
+/// What a profile says, in words: the secant stiffness per width at the clamp, and how the material agrees.
+std::string profile_text(const ProfileLaw& profile) {
+  std::string text = fmt::format(
+      "the strip's shape means a bending stiffness per width of {:.3g} N mm at the clamp, at a curvature of {:.3g} 1/m",
+      1e3 * profile.law.strain.back() / profile.law.stress.back(), profile.law.stress.back());
+  if (!profile.material.strain.empty())
+    text += fmt::format("; with the material at rest it drops by {:.1f} mm, measured are {:.1f} mm",
+                        1e3 * profile.material_drop, 1e3 * profile.drop);
+  return text;
+}
+
+ReportFigure profile_figure(const ProfileLaw& profile) {
+  Chart chart{.title = fmt::format("Moment of a strip of {:g} mm at rest", 1e3 * profile.length),
+              .x_label = "curvature [1/m]", .y_label = "moment per width [N]", .series = {}};
+  chart.series.push_back(
+      {.name = "from the profile", .points = points(profile.law.stress, 1, profile.law.strain, 1), .marks = true});
+  chart.series.push_back(
+      {.name = "material at rest", .points = points(profile.material.stress, 1, profile.material.strain, 1)});
+  return {fmt::format("{}: {}.", profile.file, profile_text(profile)), line_chart(chart)};
+}
+
 /// What a verification says, in words.
 std::string verdict(const Verification& v) {
   if (!v.failure.empty()) return "did not come to its end: " + v.failure;
@@ -183,6 +204,16 @@ json characterisation_json(const Characterisation& found) {
                              {"model", {{"scale", law->model.scale}, {"tip", law->model.tip}}}};
   }
   for (const StripHistory& strip : found.strips) result["cantilever"].push_back(strip_json(strip));
+  for (const ProfileLaw& profile : found.profiles) {
+    json one{{"file", profile.file},
+             {"length", profile.length},
+             {"drop", profile.drop},
+             {"moment", profile.law.strain},
+             {"curvature", profile.law.stress}};
+    if (!profile.material.strain.empty())
+      one["material"] = {{"drop", profile.material_drop}, {"curvature", profile.material.stress}};
+    result["profile"].push_back(one);
+  }
   for (const Verification& v : found.verifications) {
     json one{{"name", v.name},
              {"file", v.file},
@@ -212,6 +243,8 @@ std::string characterisation_text(const Characterisation& found) {
       text += fmt::format("cantilever of {:g} mm: {}; the material has {:.2g} MPa\n", 1e3 * strip.tips.length,
                           shear_modulus_text(strip), 1e-6 * found.material.transverse_shear_modulus);
   }
+  for (const ProfileLaw& profile : found.profiles)
+    text += fmt::format("profile of {:g} mm: {}\n", 1e3 * profile.length, profile_text(profile));
   for (const Verification& v : found.verifications) text += fmt::format("{}, simulated: {}\n", v.name, verdict(v));
   return text;
 }
@@ -231,6 +264,7 @@ void write_characterisation(const std::filesystem::path& folder, const Tests& te
     page.figures.push_back(stress_figure(*law, what, measure));
   }
   for (const StripHistory& strip : found.strips) page.figures.push_back(strip_figure(strip));
+  for (const ProfileLaw& profile : found.profiles) page.figures.push_back(profile_figure(profile));
   if (found.compression) page.figures.push_back(bending_figure(*found.compression));
   for (const Verification& v : found.verifications) page.figures.push_back(verification_figure(v));
   page.facts = {{"tension", found.material.tension.source},

@@ -88,6 +88,12 @@ StrainPoints points_of(const StripTest& test, const MonotoneCubic* machine, doub
     points.strain.push_back((way[k] - begin) / test.height);
     points.stress.push_back(force[k] / (test.width * thickness));
   }
+  constexpr double kInOrder = 0.9;  // of the largest displacement, which belongs to the largest force
+  const double reach = *std::max_element(way.begin(), way.end()) - begin;
+  if (points.strain.size() < kFewestTestRows || !(reach > 0) || way.back() - begin < kInOrder * reach)
+    throw WrongInput(
+        fmt::format("{}: nothing is left of the curve without its toe{}", test.file,
+                    machine == nullptr ? "" : " and what the machine moved: is `compliance` of this machine?"));
   return points;
 }
 

@@ -36,7 +36,7 @@ void prepare_streams() {
     // The lowest free descriptor is taken: this one, as those below are open by now.
     if (open("/dev/null", stream == STDIN_FILENO ? O_RDONLY : O_WRONLY) != stream) return;
   }
-  std::signal(SIGPIPE, SIG_IGN);
+  for (const int number : {SIGPIPE, SIGXFSZ}) std::signal(number, SIG_IGN);  // writing fails with a reason instead
 }
 
 void print(const std::string& text, bool kept) {

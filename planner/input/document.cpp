@@ -3,11 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <limits>
-#include <optional>
 #include <sstream>
 
 #include "planner/base/json_text.hpp"
@@ -17,23 +13,6 @@ namespace drapeplan {
 namespace {
 
 using nlohmann::json;
-
-std::optional<std::string> file_text(const std::filesystem::path& file, std::string& fault) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) {
-    fault = "cannot be read: it is a folder";
-    return std::nullopt;
-  }
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream.is_open() || stream.bad()) {
-    fault = fmt::format("cannot be read: {}", errno != 0 ? std::strerror(errno) : "unknown reason");
-    return std::nullopt;
-  }
-  return text.str();
-}
 
 bool lies_in(const std::string& pointer, const std::string& prefix) {
   return pointer.starts_with(prefix) && (pointer.size() == prefix.size() || pointer[prefix.size()] == '/');
@@ -121,9 +100,9 @@ void InputDocument::complete(const std::filesystem::path& folder, const std::vec
 }
 
 bool InputDocument::load(const std::filesystem::path& file, const std::string& prefix, json& into) {
-  std::string fault;
-  const std::optional<std::string> text = file_text(file, fault);
-  if (!text) {
+  const FileText text = read_file(file, prefix.empty());
+  if (!text.fault.empty()) {
+    const std::string fault = "cannot be read: " + text.fault;
     if (prefix.empty()) {
       errors_.push_back({file.string(), 0, "", fault});
     } else {
@@ -131,7 +110,7 @@ bool InputDocument::load(const std::filesystem::path& file, const std::string& p
     }
     return false;
   }
-  ParsedText parsed = parse_json_text(*text);
+  ParsedText parsed = parse_json_text(text.text);
   for (const TextFault& at : parsed.faults) {
     const std::string column = at.column > 0 ? fmt::format("column {}: ", at.column) : "";
     errors_.push_back({file.string(), at.line, at.pointer, column + at.message});

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <memory>
+#include <string>
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_GIF
@@ -13,6 +15,7 @@
 #include <stb/stb_image.h>
 
 #include "mapping/error.hpp"
+#include "planner/base/text.hpp"
 
 namespace drapeplan {
 namespace {
@@ -47,15 +50,52 @@ std::vector<Patch> patches_of(const GreyImage& image, const StripImageOptions& o
   return patches;
 }
 
+/// The next number in the head of a PNM file, behind blanks and comments; 0 if there is none.
+double head_number(const std::string& bytes, size_t& at) {
+  while (at < bytes.size() && (std::isspace(static_cast<unsigned char>(bytes[at])) != 0 || bytes[at] == '#'))
+    at = bytes[at] == '#' ? std::min(bytes.find('\n', at), bytes.size()) : at + 1;
+  double value = 0;
+  for (; at < bytes.size() && std::isdigit(static_cast<unsigned char>(bytes[at])) != 0; ++at)
+    value = 10 * value + (bytes[at] - '0');
+  return value;
+}
+
+/// What the decoder does not look for: it takes pixels that are absent for black, and levels for those of 8 bits.
+/// @return what is wrong; empty: nothing.
+std::string incomplete_image(const std::string& bytes) {
+  if (bytes.starts_with("P5") || bytes.starts_with("P6")) {
+    size_t at = 2;
+    const double width = head_number(bytes, at), height = head_number(bytes, at), white = head_number(bytes, at);
+    if (white != 255) return fmt::format("white is {}; expected 255, that is pixels of 8 bits", white);
+    if (!(width > 0 && height > 0)) return fmt::format("it has {} times {} pixels", width, height);
+    const double needed = double(at) + 1 + width * height * (bytes[1] == '6' ? 3 : 1);
+    if (double(bytes.size()) < needed)
+      return fmt::format("it is cut off: {} bytes of {}", bytes.size(), needed);
+  }
+  if (bytes.starts_with("\xFF\xD8")) {  // JPEG: the scan has no marker but its end
+    const size_t scan = bytes.rfind("\xFF\xDA"), end = bytes.rfind("\xFF\xD9");
+    if (scan == std::string::npos || end == std::string::npos || end < scan) return "it is cut off";
+  }
+  return {};
+}
+
 }  // namespace
 
 GreyImage read_image(const std::filesystem::path& file) {
+  const auto fail = [&file](const std::string& reason) {
+    throw WrongInput(fmt::format("{}: cannot be read as an image: {}", file.string(), reason));
+  };
+  const FileText bytes = read_file(file);
+  if (!bytes.fault.empty()) fail(bytes.fault);
+  const std::string incomplete = incomplete_image(bytes.text);
+  if (!incomplete.empty()) fail(incomplete);
   GreyImage image;
   int channels = 0;
   const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> levels(
-      stbi_load(file.c_str(), &image.width, &image.height, &channels, 1), &stbi_image_free);
-  if (!levels)
-    throw WrongInput(fmt::format("{}: cannot be read as an image: {}", file.string(), stbi_failure_reason()));
+      stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.text.data()), int(bytes.text.size()), &image.width,
+                            &image.height, &channels, 1),
+      &stbi_image_free);
+  if (!levels) fail(stbi_failure_reason());
   image.levels.assign(levels.get(), levels.get() + size_t(image.width) * size_t(image.height));
   return image;
 }
@@ -71,6 +111,12 @@ std::vector<Eigen::Vector2d> strip_midline(const GreyImage& image, const StripIm
                                  patches.empty() ? "nothing" : "more than half", colour));
   if (patches.size() > 1 && double(patches[1].size()) > kComparable * double(patches[0].size()))
     throw WrongInput(fmt::format("shows two strips, of {} and {} pixels", patches[0].size(), patches[1].size()));
+  const int far_side = options.clamp_right ? 0 : image.width - 1;
+  for (const int index : patches.front()) {
+    if (index / image.width == image.height - 1 || index % image.width == far_side)
+      throw WrongInput(fmt::format("the strip reaches the {} edge of the picture: its tip may lie outside",
+                                   index % image.width != far_side ? "lower" : options.clamp_right ? "left" : "right"));
+  }
   std::vector<double> sum(size_t(image.width), 0), count(size_t(image.width), 0);
   for (const int index : patches.front()) {
     sum[size_t(index % image.width)] += index / image.width;

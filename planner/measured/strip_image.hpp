@@ -17,7 +17,7 @@ struct GreyImage {
   }
 };
 
-/// Reads a PNG, PGM, PPM or JPEG file; colours become grey.
+/// Reads a PNG, PGM, PPM or JPEG file; colours become grey. PGM and PPM have 8 bits for each level.
 /// @throws WrongInput with the file and the reason.
 GreyImage read_image(const std::filesystem::path& file);
 
@@ -32,7 +32,8 @@ struct StripImageOptions {
 /// The strip's middle, column by column, from the clamp on: x away from the clamp, y up [m]; the first point is
 /// the origin. [Krogh], "Cantilever Test": threshold, small areas removed, mean row of each column. The largest
 /// patch is the strip.
-/// @throws WrongInput if there is no strip, or a second patch of comparable size.
+/// @throws WrongInput if there is no strip, a second patch of comparable size, or if the strip reaches the lower edge
+/// of the picture or the one opposite its clamp, where its tip may be cut off.
 std::vector<Eigen::Vector2d> strip_midline(const GreyImage& image, const StripImageOptions& options);
 
 }  // namespace drapeplan

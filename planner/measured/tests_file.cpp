@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -14,15 +13,21 @@
 #include "planner/input/document.hpp"
 #include "planner/input/kit.hpp"
 #include "planner/input/reader.hpp"
+#include "planner/measured/test_checks.hpp"
 
 namespace drapeplan {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Strain of fibres beyond which a table holds something else.
 constexpr double kLargestTension = 0.2;
-/// How far what moves may seem to go back, of its whole way: more than noise.
-constexpr double kCrossheadNoise = 0.02, kTipNoise = 0.2;
+constexpr double kLargestStress = 2e10;  // [Pa]: no fibre bears more
+constexpr double kShareOfWeight = 0.01;  // of a specimen's own weight: a force that shows nothing of it
+constexpr double kLeastCellForce = 1e-3; // [N]: no load cell that holds steel shows less
+constexpr double kThinnest = 1e-6;       // [m]: thinner than a fibre
+constexpr double kLightest = 1e-4;       // [kg/m^2]: the lightest veils have 2e-3
+constexpr double kLeastGravity = 1e-3;   // [m/s^2]: nothing bends under it
+/// Simulated strips have cells of a share of their width: of longer ones nobody could wait for the end.
+constexpr double kLargestSlenderness = 50;
 
 void visit_columns(FieldVisitor& v, ColumnNames& names, bool angle) {
   v.section({"columns", "What columns of the file are called, where that is not usual", false, {}, true}, true,
@@ -58,16 +63,21 @@ void visit_cantilever(FieldVisitor& v, CantileverTest& test) {
   v.field({"length", &test.length, "Free length", Dimension::length, positive(kLargestLength), true});
   v.field({"width", &test.width, "Of the strip", Dimension::length, positive(kLargestLength), true});
   v.field({"file", &test.file, "Text table of times and deflections of the tip, relative to this file"});
+  v.field({"profile", &test.profile,
+           "Text table of the strip's shape at rest, from the clamp to the tip: distances x from the clamp and "
+           "deflections there, relative to this file"});
   v.section({"columns", "What columns of the file are called, where that is not usual", false, {}, true}, true,
             [&] {
               v.field({"time", &test.columns.time, "Name of the column of times"});
               v.field({"deflection", &test.columns.deflection, "Name of the column of deflections"});
+              v.field({"distance", &test.columns.distance, "Of a profile: name of the column of distances"});
             });
-  v.list(object_list("frames", "Pictures instead of a table, in the order of time", test.frames,
+  v.list(object_list("frames", "Pictures instead of tables, in the order of time", test.frames,
                      [&v](StripFrame& frame) {
                        v.field({"file", &frame.file, "PNG, PGM, PPM or JPEG, relative to this file",
                                 Dimension::none, {}, true});
-                       v.field({"time", &frame.time, "Since the strip was let go", Dimension::time, from(0), true});
+                       v.field({"time", &frame.time, "Since the strip was let go", Dimension::time,
+                              from(0, kLongestTest), true});
                      }));
   StripImageOptions& image = test.image;
   v.field({"scale", &image.scale, "Size of a pixel", Dimension::length, from(0)});
@@ -84,9 +94,9 @@ void visit_tests(FieldVisitor& v, Tests& tests) {
   v.field({"format", choice(format, {kTestsFormat}), "What this file is", Dimension::none, {}, true});
   v.field({"name", &tests.name, "What the material is called"});
   v.field({"source", &tests.source, "Who made the tests, where and when"});
-  v.field({"thickness", &tests.thickness, "Of the ply", Dimension::length, positive(0.05), true});
-  v.field({"areal_density", &tests.areal_density, "Mass per area", Dimension::areal_density, positive(100),
-           true});
+  v.field({"thickness", &tests.thickness, "Of the ply", Dimension::length, from(kThinnest, 0.05), true});
+  v.field({"areal_density", &tests.areal_density, "Mass per area", Dimension::areal_density,
+           from(kLightest, 100), true});
   v.list(object_list("compliance",
                      "Tests of a stiff specimen in the same clamps: their displacement is the machine's, and "
                      "is subtracted",
@@ -114,7 +124,8 @@ void visit_tests(FieldVisitor& v, Tests& tests) {
                      [&v](CantileverTest& test) { visit_cantilever(v, test); }));
   v.field({"transverse_shear_modulus", &tests.transverse_shear_modulus,
            "Chosen one; the page shows what the slopes at the clamp say", Dimension::stress, positive()});
-  v.field({"gravity", &tests.gravity, "Acceleration of the cantilevers", Dimension::acceleration, positive(100)});
+  v.field({"gravity", &tests.gravity, "Acceleration of the cantilevers", Dimension::acceleration,
+           from(kLeastGravity, 100)});
   v.field({"section_points", &tests.section_points,
            "Of simulated cantilevers, 3 or 5: those of the cases that will use the material (`fem.section_points`). "
            "Three see so little of a compression curve with a break that a strip of 150 mm drops 7 mm deeper",
@@ -136,11 +147,21 @@ class DataReader {
       : folder_(std::move(folder)), reader_(reader) {}
 
   void read(Tests& tests) {
-    for (size_t k = 0; k < tests.compliance.size(); ++k)
-      table(tests.compliance[k], fmt::format("/compliance/{}", k), false, kInfinity);
-    for (size_t k = 0; k < tests.tension.size(); ++k)
-      table(tests.tension[k], fmt::format("/tension/{}", k), false,
-            kLargestTension * tests.tension[k].height);
+    for (size_t k = 0; k < tests.compliance.size(); ++k) {
+      MachineLimits limits;
+      limits.least_force = kLeastCellForce;
+      limits.rises = true;
+      table(tests.compliance[k], fmt::format("/compliance/{}", k), false, limits);
+    }
+    for (size_t k = 0; k < tests.tension.size(); ++k) {
+      const StripTest& test = tests.tension[k];
+      const std::string pointer = fmt::format("/tension/{}", k);
+      check_slenderness(pointer, "height", test.height, test.width);
+      MachineLimits limits = limits_of(tests, test.width, test.height, test.rate);
+      limits.way = kLargestTension * test.height;
+      limits.rises = true;
+      table(tests.tension[k], pointer, false, limits);
+    }
     for (size_t k = 0; k < tests.bias_extension.size(); ++k) {
       const std::string pointer = fmt::format("/bias_extension/{}", k);
       const StripTest& test = tests.bias_extension[k];
@@ -150,58 +171,87 @@ class DataReader {
                      fmt::format("is less than twice the width ({}): no zone of the strip is then free of both "
                                  "clamps, and Eq. (10) does not hold",
                                  format_quantity(test.width, Dimension::length)));
-      table(tests.bias_extension[k], pointer, true, (std::numbers::sqrt2 - 1) * (test.height - test.width));
+      check_slenderness(pointer, "height", test.height, test.width);
+      MachineLimits limits = limits_of(tests, test.width, test.height, test.rate);
+      limits.way = (std::numbers::sqrt2 - 1) * (test.height - test.width);
+      table(tests.bias_extension[k], pointer, true, limits);
     }
-    for (size_t k = 0; k < tests.picture_frame.size(); ++k)
-      table(tests.picture_frame[k], fmt::format("/picture_frame/{}", k), true,
-            (2 - std::numbers::sqrt2) * tests.picture_frame[k].side);
+    for (size_t k = 0; k < tests.picture_frame.size(); ++k) {
+      const FrameTest& test = tests.picture_frame[k];
+      const double side = test.specimen.value_or(test.side);
+      MachineLimits limits = limits_of(tests, side, side, test.rate);
+      limits.way = (2 - std::numbers::sqrt2) * test.side;
+      table(tests.picture_frame[k], fmt::format("/picture_frame/{}", k), true, limits);
+    }
     for (size_t k = 0; k < tests.cantilever.size(); ++k)
       cantilever(tests.cantilever[k], fmt::format("/cantilever/{}", k));
-    const bool any = !tests.cantilever.empty() || !tests.tension.empty() || !tests.bias_extension.empty() || !tests.picture_frame.empty();
+    const bool any = !tests.cantilever.empty() || !tests.tension.empty() || !tests.bias_extension.empty() ||
+                     !tests.picture_frame.empty();
     if (!any && reader_.errors().empty()) reader_.add_error("", "names no tests");
   }
 
   [[nodiscard]] std::vector<InputError>& errors() { return errors_; }
 
  private:
-  /// @param longest  way of the crosshead that the specimen allows [m].
+  /// Of a specimen: forces between a share of its weight and what fibres bear.
+  [[nodiscard]] static MachineLimits limits_of(const Tests& tests, double width, double height, double rate) {
+    MachineLimits limits;
+    limits.rate = rate;
+    limits.least_force = kShareOfWeight * tests.gravity * tests.areal_density * width * height;
+    limits.most_force = kLargestStress * width * tests.thickness;
+    return limits;
+  }
+
+  void check_slenderness(const std::string& pointer, const std::string& name, double length, double width) {
+    if (reader_.good(pointer + "/width") && reader_.good(pointer + '/' + name) && length > kLargestSlenderness * width)
+      reader_.fail(pointer + "/width", fmt::format("is less than {:g} of the {} ({}): the wrong unit?",
+                                                   1 / kLargestSlenderness, name,
+                                                   format_quantity(length, Dimension::length)));
+  }
+
+  /// @param angle  whether shear angles may have been measured.
   template <class Test>
-  void table(Test& test, const std::string& pointer, bool angle, double longest) {
+  void table(Test& test, const std::string& pointer, bool angle, const MachineLimits& limits) {
     if (!reader_.good(pointer + "/file")) return;
     std::vector<WantedColumn> wanted{{TestQuantity::time, false, test.columns.time},
                                      {TestQuantity::displacement, true, test.columns.displacement},
                                      {TestQuantity::force, true, test.columns.force}};
     if (angle) wanted.push_back({TestQuantity::angle, false, test.columns.angle});
     for (WantedColumn& column : wanted) column.required = column.required || !column.header.empty();
-    TableReading reading = read_test_table(folder_ / test.file, wanted);
-    if (reading.errors.empty()) {
-      double rate = 0;
-      if constexpr (requires { test.rate; }) rate = reader_.good(pointer + "/rate") ? test.rate : 0;
-      const std::string name = (folder_ / test.file).string();
-      check_order(reading.table, name, TestQuantity::displacement, kCrossheadNoise);
-      check_way(reading.table, name, rate, longest);
-      check_slip(reading.table, name);
-    }
+    const bool sizes = reader_.good(pointer) && reader_.good("/thickness") && reader_.good("/areal_density");
+    test.table = read(test.file, wanted, kFewestTestRows, [&](const TestTable& rows, const std::string& file) {
+      return sizes ? machine_faults(rows, file, limits) : std::vector<InputError>();
+    });
+  }
+
+  /// Reads a table, and looks for faults of it as a whole.
+  template <class Faults>
+  TestTable read(const std::string& name, const std::vector<WantedColumn>& wanted, size_t fewest,
+                 const Faults& faults) {
+    TableReading reading = read_test_table(folder_ / name, wanted, fewest);
+    if (reading.errors.empty()) reading.errors = faults(reading.table, (folder_ / name).string());
     errors_.insert(errors_.end(), reading.errors.begin(), reading.errors.end());
-    test.table = std::move(reading.table);
+    return std::move(reading.table);
   }
 
   void cantilever(CantileverTest& test, const std::string& pointer) {
     if (!reader_.good(pointer)) return;
-    if (test.file.empty() == test.frames.empty())
-      return reader_.fail(pointer, "needs either a file with the deflections of its tip or frames, not both");
-    if (!test.file.empty()) {
-      TableReading reading = read_test_table(folder_ / test.file,
-                                             {{TestQuantity::time, true, test.columns.time},
-                                              {TestQuantity::deflection, true, test.columns.deflection}});
-      errors_.insert(errors_.end(), reading.errors.begin(), reading.errors.end());
-      test.table = std::move(reading.table);
-      if (reading.errors.empty()) {
-        check_order(test.table, (folder_ / test.file).string(), TestQuantity::deflection, kTipNoise);
-        check_drop(test, (folder_ / test.file).string());
-      }
-      return;
-    }
+    check_slenderness(pointer, "length", test.length, test.width);
+    if (int(!test.file.empty()) + int(!test.profile.empty()) + int(!test.frames.empty()) != 1)
+      return reader_.add_error(pointer, "needs one of three: a file with the deflections of its tip, frames, or a "
+                                        "profile");
+    const WantedColumn deflection{TestQuantity::deflection, true, test.columns.deflection};
+    if (!test.file.empty())
+      test.table = read(test.file, {{TestQuantity::time, true, test.columns.time}, deflection}, kFewestTestRows,
+                        [&](const TestTable& rows, const std::string& file) {
+                          return drop_faults(rows, file, test.length);
+                        });
+    if (!test.profile.empty())
+      test.table = read(test.profile, {{TestQuantity::distance, true, test.columns.distance}, deflection},
+                        kFewestProfileRows, [&](const TestTable& rows, const std::string& file) {
+                          return profile_faults(rows, file, test.length);
+                        });
+    if (test.frames.empty()) return;
     if (!(test.image.scale > 0)) return reader_.add_error(pointer, "\"scale\" is missing: the size of a pixel");
     for (size_t k = 0; k < test.frames.size(); ++k) frame(test, k, fmt::format("{}/frames/{}", pointer, k));
   }
@@ -215,7 +265,6 @@ class DataReader {
       one.line = strip_midline(read_image(file), test.image);
       double length = 0;
       for (size_t n = 1; n < one.line.size(); ++n) length += (one.line[n] - one.line[n - 1]).norm();
-      constexpr double kLengthTolerance = 0.1;
       if (std::abs(length - test.length) > kLengthTolerance * test.length)
         throw WrongInput(fmt::format("the strip is {:.4g} mm long, not {:.4g} mm: the wrong scale, threshold or "
                                      "clamp",
@@ -223,94 +272,15 @@ class DataReader {
       constexpr double kAbove = 0.02;  // of the length
       if (one.line.back().y() > kAbove * test.length)
         throw WrongInput("the strip ends above its clamp: is the clamp on the other side (`clamp_right`)?");
+      const double drop = -one.line.back().y();
+      if (k + 1 == test.frames.size() && !(drop >= kLeastDrop * test.length))
+        throw WrongInput(fmt::format("the strip drops by {:.3g} mm, less than {:g} % of its length: too little to be "
+                                     "measured",
+                                     1e3 * drop, 1e2 * kLeastDrop));
     } catch (const WrongInput& error) {
       const std::string reason = error.what();
       errors_.push_back({file, 0, "", reason.starts_with(file) ? reason.substr(file.size() + 2) : reason});
     }
-  }
-
-  void fail(const std::string& file, int line, TestQuantity quantity, std::string message) {
-    errors_.push_back({file, line, quantity_name(quantity), std::move(message)});
-  }
-
-  /// Times increase, and so does, but for noise, what moves. @param noise  that is possible, of the whole way.
-  void check_order(const TestTable& table, const std::string& file, TestQuantity moves, double noise) {
-    const std::vector<double>& way = table[moves];
-    for (size_t k = 1; k < table.rows(); ++k) {
-      if (table.has(TestQuantity::time) && !(table[TestQuantity::time][k] > table[TestQuantity::time][k - 1]))
-        return fail(file, table.lines[k], TestQuantity::time, "does not increase: rows are not in their order");
-      if (way[k] < way[k - 1] - noise * range(way))
-        return fail(file, table.lines[k], moves,
-                    fmt::format("jumps back from {:.4g} to {:.4g} mm: rows are not in their order, or the "
-                                "columns are swapped",
-                                1e3 * way[k - 1], 1e3 * way[k]));
-    }
-  }
-
-  /// A strip's tip hangs no lower than the strip is long, not above its clamp, and comes down ever more slowly.
-  void check_drop(const CantileverTest& test, const std::string& file) {
-    const std::vector<double>&time = test.table[TestQuantity::time], &drop = test.table[TestQuantity::deflection];
-    constexpr double kAbove = 0.05;   // of the length: more than noise
-    constexpr double kHalfway = 0.4;  // of the way, after half of the time: what creeps is further than this
-    for (size_t k = 0; k < drop.size(); ++k) {
-      const int line = test.table.lines[k];
-      if (drop[k] > test.length)
-        return fail(file, line, TestQuantity::deflection,
-                    fmt::format("{:.4g} mm is deeper than the strip is long, {:.4g} mm: the wrong unit, column or "
-                                "length",
-                                1e3 * drop[k], 1e3 * test.length));
-      if (drop[k] < -kAbove * test.length)
-        return fail(file, line, TestQuantity::deflection,
-                    fmt::format("{:.4g} mm lies above the clamp; deflections are > 0 downwards", 1e3 * drop[k]));
-      if (time[k] - time.front() < 0.5 * (time.back() - time.front())) continue;
-      if (drop[k] - drop.front() < kHalfway * (drop.back() - drop.front()))
-        return fail(file, line, TestQuantity::deflection,
-                    "grows ever faster, but a strip comes down ever more slowly: are the columns swapped?");
-      return;
-    }
-  }
-
-  /// The crosshead goes as fast as stated, and no further than the specimen allows.
-  void check_way(const TestTable& table, const std::string& file, double rate, double longest) {
-    const std::vector<double>& way = table[TestQuantity::displacement];
-    if (range(way) > longest)
-      fail(file, table.lines.back(), TestQuantity::displacement,
-           fmt::format("grows by {:.4g} mm, but this specimen allows {:.4g} mm: the wrong unit, size or column",
-                       1e3 * range(way), 1e3 * longest));
-    if (rate <= 0 || !table.has(TestQuantity::time)) return;
-    const double seconds = table[TestQuantity::time].back() - table[TestQuantity::time].front();
-    const double measured = (way.back() - way.front()) / seconds;
-    constexpr double kRateTolerance = 0.2;
-    if (!(std::abs(measured - rate) <= kRateTolerance * rate))
-      fail(file, table.lines.back(), TestQuantity::displacement,
-           fmt::format("grows by {:.3g} mm/min, but the test's rate is {:.3g} mm/min: the wrong unit, rate or "
-                       "column",
-                       6e4 * measured, 6e4 * rate));
-  }
-
-  /// A force that falls at once, and rises again, is a specimen that slipped.
-  void check_slip(const TestTable& table, const std::string& file) {
-    const std::vector<double>&way = table[TestQuantity::displacement], &force = table[TestQuantity::force];
-    constexpr double kFall = 0.1;      // of the largest force
-    constexpr double kAtOnce = 0.005;  // of the whole way
-    const double largest = *std::max_element(force.begin(), force.end());
-    size_t first = 0;
-    for (size_t k = 0; k < table.rows(); ++k) {
-      while (way[k] - way[first] > kAtOnce * range(way)) ++first;
-      const double before = *std::max_element(force.begin() + std::ptrdiff_t(first), force.begin() + std::ptrdiff_t(k) + 1);
-      if (before - force[k] < kFall * largest) continue;
-      const double after = *std::max_element(force.begin() + std::ptrdiff_t(k), force.end());
-      if (after < before) return;  // it never rises again: the specimen failed, or the test was over
-      return fail(file, table.lines[k], TestQuantity::force,
-                  fmt::format("falls from {:.4g} to {:.4g} N at once, at {:.4g} mm, and rises again: did the "
-                              "specimen slip in its clamps?",
-                              before, force[k], 1e3 * way[k]));
-    }
-  }
-
-  static double range(const std::vector<double>& values) {
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    return *high - *low;
   }
 
   std::filesystem::path folder_;

@@ -17,7 +17,7 @@ inline constexpr const char* kTestsFormat = "drapeplan-tests 1";
 
 /// Names of columns in a test's file; empty: the usual names are looked for.
 struct ColumnNames {
-  std::string time, displacement, force, angle, deflection;
+  std::string time, displacement, force, angle, deflection, distance;
 };
 
 /// A strip in a tensile test machine: along the fibres (tension) or at 45 degrees to them (bias extension).
@@ -54,13 +54,17 @@ struct StripFrame {
   std::vector<Eigen::Vector2d> line;   ///< its middle, see strip_midline
 };
 
-/// A strip that is clamped at one end and bends under its weight: pictures, or a table of its tip.
+/// Rows of a profile: each fourth one is a piece of its law.
+inline constexpr size_t kFewestProfileRows = 20;
+
+/// A strip that is clamped at one end and bends under its weight: pictures, a table of its tip, or its shape at rest.
 struct CantileverTest {
   double length = 0, width = 0;  ///< free length and width [m]
-  std::string file;              ///< table of times and deflections; empty: there are pictures
+  std::string file;              ///< table of times and deflections; may be empty
+  std::string profile;           ///< table of distances and deflections at rest; may be empty
   ColumnNames columns;
   TestTable table;
-  std::vector<StripFrame> frames;  ///< in the order of time
+  std::vector<StripFrame> frames;  ///< in the order of time; may be empty
   StripImageOptions image;
 };
 

@@ -8,10 +8,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "planner/base/quantity.hpp"
 #include "planner/base/text.hpp"
@@ -27,8 +27,8 @@ struct QuantityWords {
   std::vector<std::string> headers;
 };
 
-const std::array<QuantityWords, 7>& all_quantities() {
-  static const std::array<QuantityWords, 7> list{{
+const std::array<QuantityWords, 8>& all_quantities() {
+  static const std::array<QuantityWords, 8> list{{
       {TestQuantity::time, "time", Dimension::time, {"time", "test time", "zeit", "prüfzeit", "t"}},
       {TestQuantity::displacement,
        "displacement",
@@ -47,6 +47,7 @@ const std::array<QuantityWords, 7>& all_quantities() {
        "deflection",
        Dimension::length,
        {"deflection", "tip deflection", "tip", "durchbiegung"}},
+      {TestQuantity::distance, "distance", Dimension::length, {"distance", "x", "abstand"}},
       {TestQuantity::strain,
        "strain",
        Dimension::strain,
@@ -110,7 +111,8 @@ class TableReader {
       : file_(file), wanted_(wanted), fewest_(fewest) {}
 
   TableReading read() {
-    if (load() && find_names() && find_units()) read_rows();
+    std::string text;
+    if (load(text) && split_at_names(text) && find_units()) read_rows();
     return std::move(reading_);
   }
 
@@ -127,52 +129,62 @@ class TableReader {
     return false;
   }
 
-  bool load() {
-    std::error_code error;
-    if (std::filesystem::is_directory(file_, error)) return fail(0, "", "is a folder, not a file");
-    errno = 0;
-    std::ifstream in(file_, std::ios::binary);
-    if (!in) return fail(0, "", "cannot be read: " + std::generic_category().message(errno));
-    std::string text{std::istreambuf_iterator<char>(in), {}};
+  bool load(std::string& text) {
+    FileText file = read_file(file_);
+    if (!file.fault.empty()) return fail(0, "", "cannot be read: " + file.fault);
+    text = std::move(file.text);
     if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
       return fail(1, "", "is UTF-16; please export it as plain text or UTF-8");
-    if (utf8_prefix(text) < text.size() && text.find('\0') != std::string::npos)
-      return fail(1, "", "is no text");
-    split(text);
-    if (lines_.empty()) return fail(0, "", "is empty");
+    const size_t nul = text.find('\0');
+    if (nul != std::string::npos)
+      return fail(1 + int(std::count(text.begin(), text.begin() + std::ptrdiff_t(nul), '\n')), "",
+                  "has a NUL byte: it is no text, or UTF-16; please export it as plain text or UTF-8");
+    if (trimmed(text).find_first_not_of("\n") == std::string::npos) return fail(1, "", "is empty");
     return true;
   }
 
-  void split(const std::string& text) {
-    const char separator = text.find(';') != std::string::npos    ? ';'
-                           : text.find('\t') != std::string::npos ? '\t'
-                                                                  : ',';
-    decimal_comma_ = separator != ',';
+  /// Splits lines into cells by the first separator with which a row has the names that are sought: notes may hold
+  /// separators that the table does not use.
+  bool split_at_names(const std::string& text) {
+    std::vector<InputError> errors;  // if there is none: of the first one, or of one that has a name twice
+    for (const char separator : {';', '\t', ','}) {
+      if (separator != ',' && text.find(separator) == std::string::npos) continue;
+      decimal_comma_ = separator != ',';
+      reading_.errors.clear();
+      if (split(text, separator) && find_names()) return true;
+      if (errors.empty() || !reading_.errors.front().path.empty()) errors = reading_.errors;
+    }
+    reading_.errors = std::move(errors);
+    return false;
+  }
+
+  bool split(const std::string& text, char separator) {
+    constexpr size_t kMostCells = 1000;  // no test has so many channels
+    lines_.clear();
     std::istringstream stream(text);
     std::string line;
     for (int number = 1; std::getline(stream, line); ++number) {
-      if (trimmed(line).empty()) continue;
       Line one{number, {}};
-      std::string cell;
-      bool quoted = false;
-      for (const char c : line) {
-        if (c == '"') quoted = !quoted;
-        if (c == separator && !quoted) {
-          one.cells.push_back(trimmed(cell));
-          cell.clear();
-        } else {
-          cell += c;
-        }
+      bool quoted = false, blank = true;
+      size_t begin = 0;
+      for (size_t k = 0; k <= line.size(); ++k) {
+        if (k < line.size() && line[k] == '"') quoted = !quoted;
+        if (k < line.size() && (line[k] != separator || quoted)) continue;
+        one.cells.push_back(trimmed(std::string_view(line).substr(begin, k - begin)));
+        blank = blank && one.cells.back().empty();
+        begin = k + 1;
+        if (one.cells.size() > kMostCells)
+          return fail(number, "", fmt::format("has more than {} columns: it is no table of a test", kMostCells));
       }
-      one.cells.push_back(trimmed(cell));
-      const bool blank =
-          std::all_of(one.cells.begin(), one.cells.end(), [](const std::string& c) { return c.empty(); });
       if (!blank) lines_.push_back(std::move(one));
     }
+    return !lines_.empty() || fail(1, "", "is empty");
   }
 
   [[nodiscard]] bool is_called(const WantedColumn& wanted, const std::string& cell) const {
+    constexpr size_t kLongestName = 200;
+    if (cell.size() > kLongestName) return false;
     const std::string name = lower(header_of(cell).name);
     if (!wanted.header.empty()) return name == lower(wanted.header) || lower(cell) == lower(wanted.header);
     const auto& headers = words_of(wanted.quantity).headers;
@@ -192,7 +204,7 @@ class TableReader {
             found.push_back({wanted.quantity, k, header_of(line.cells[k]), nullptr});
         }
         if (found.size() > 1)
-          return fail(line.number, found[1].header.name,
+          return fail(line.number, shown(found[1].header.name),
                       fmt::format("is the second column for the {}; say in `columns` which one is meant",
                                   quantity_name(wanted.quantity)));
         all = all && (found.size() == 1 || !wanted.required);
@@ -235,7 +247,7 @@ class TableReader {
                                 column.header.name, drapeplan::words_of(dimension).units.front().name));
       column.unit = find_unit(dimension, unit);
       if (column.unit == nullptr)
-        return fail(lines_[names_].number, column.header.name, unit_fault(unit, dimension));
+        return fail(lines_[names_].number, column.header.name, unit_fault(shown(unit), dimension));
     }
     return true;
   }
@@ -246,12 +258,55 @@ class TableReader {
       const size_t comma = cell.find(',');
       if (comma != std::string::npos) cell[comma] = '.';
     }
-    if (!cell.empty() && cell.front() == '+') cell.erase(0, 1);
+    if (cell.starts_with('+') && !cell.starts_with("+-")) cell.erase(0, 1);
     double value = 0;
     const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (fault != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
-      return std::nullopt;
+    if (fault != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
     return value;
+  }
+
+  /// A file has one decimal sign. With a second one numbers of three digits behind it cannot be told from thousands.
+  bool has_one_sign(const Line& line, const Column& column, const std::string& cell) {
+    if (!decimal_comma_) return true;
+    for (const char sign : {'.', ','}) {
+      if (cell.find(sign) == std::string::npos) continue;
+      if (sign_ == 0) sign_ = sign, sign_line_ = line.number;
+      if (sign_ != sign)
+        return fail(line.number, column.header.name,
+                    fmt::format("\"{}\" has a decimal {}, but line {} a decimal {}: is one of them for thousands?",
+                                shown(cell), sign == ',' ? "comma" : "point", sign_line_,
+                                sign == ',' ? "point" : "comma"));
+    }
+    return true;
+  }
+
+  /// Cells that no column belongs to are decimal commas that separate.
+  bool has_columns(const Line& line) {
+    const auto used = [](const std::vector<std::string>& cells) {
+      size_t count = cells.size();
+      while (count > 0 && cells[count - 1].empty()) --count;
+      return count;
+    };
+    const size_t cells = used(line.cells), names = used(lines_[names_].cells);
+    return cells <= names ||
+           fail(line.number, "",
+                fmt::format("has {} cells, but line {} names {} columns; where commas separate columns, decimal signs "
+                            "are points",
+                            cells, lines_[names_].number, names));
+  }
+
+  bool read_cell(const Line& line, const Column& column) {
+    const std::string cell = column.index < line.cells.size() ? line.cells[column.index] : "";
+    const std::optional<double> value = number(cell);
+    if (!value)
+      return fail(line.number, column.header.name,
+                  cell.empty() ? "has no number in this row" : fmt::format("\"{}\" is no number", shown(cell)));
+    const double in_si = *value * column.unit->multiply / column.unit->divide;
+    if (!std::isfinite(in_si))
+      return fail(line.number, column.header.name, fmt::format("\"{}\" is no finite number", shown(cell)));
+    if (!has_one_sign(line, column, cell)) return false;
+    reading_.table.columns[column.quantity].push_back(in_si);
+    return true;
   }
 
   void read_rows() {
@@ -260,15 +315,9 @@ class TableReader {
     for (size_t k = first_row_; k < lines_.size(); ++k) {
       const Line& line = lines_[k];
       for (const Column& column : columns_) {
-        const std::string cell = column.index < line.cells.size() ? line.cells[column.index] : "";
-        const std::optional<double> value = number(cell);
-        if (!value) {
-          fail(line.number, column.header.name,
-               cell.empty() ? "has no number in this row" : fmt::format("\"{}\" is no number", cell));
-          return;
-        }
-        table.columns[column.quantity].push_back(*value * column.unit->multiply / column.unit->divide);
+        if (!read_cell(line, column)) return;
       }
+      if (!has_columns(line)) return;
       table.lines.push_back(line.number);
     }
     if (table.rows() < fewest_)
@@ -281,6 +330,8 @@ class TableReader {
   size_t fewest_;
   std::vector<Line> lines_;
   bool decimal_comma_ = false;
+  char sign_ = 0;       ///< the decimal sign of the first number that has one
+  int sign_line_ = 0;
   size_t names_ = 0, first_row_ = 0;
   std::vector<Column> columns_;
   TableReading reading_;

@@ -16,7 +16,8 @@ enum class TestQuantity {
   displacement,  ///< of the crosshead [m]
   force,         ///< [N]
   angle,         ///< measured shear angle [rad]
-  deflection,    ///< of a strip's tip, downwards [m]
+  deflection,    ///< of a strip, downwards [m]
+  distance,      ///< of a place of a strip from its clamp, horizontal [m]
   strain,        ///< nominal [-]
   stress,        ///< nominal [Pa]
 };

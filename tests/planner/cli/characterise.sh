@@ -53,7 +53,7 @@ broken 's/"file": "steel_1.csv"/"file": "steel_9.csv"/' tests.json 'cannot be re
 broken '50{h;d};80{G}' strip_70.csv 'rows are not in their order'
 broken '40s/;.*/;75/' strip_70.csv ':40: deflection: 75 mm is deeper than the strip is long, 70 mm'
 broken 's/;([0-9])/;-\1/' strip_70.csv 'lies above the clamp'
-broken 's/Time \(s\);Deflection \(mm\)/Deflection (mm);Time (s)/' strip_70.csv 'are the columns swapped'
+broken 's/Time \(s\);Deflection \(mm\)/Deflection (mm);Time (s)/' strip_70.csv 'or columns are swapped'
 broken 's/Deflection \(mm\)/Deflection/' strip_70.csv ':2: Deflection: has no unit'
 broken '/"scale"/d' tests.json '/cantilever/0: "scale" is missing'
 broken 's/"scale": "0.2 mm"/"scale": "0.3 mm"/' tests.json 'mm long, not 150 mm: the wrong scale'
@@ -62,7 +62,32 @@ broken 's/"scale"/"clamp_right": true, "scale"/' tests.json 'is the clamp on the
 broken 's/strip_01.pgm/strip_99.pgm/' tests.json 'strip_99.pgm: cannot be read as an image'
 broken 's/"strip_01.pgm"/"tests.json"/' tests.json 'tests.json: cannot be read as an image'
 broken 's/"time": "0.4 s"/"time": "0.8 s"/' tests.json 's": times must increase'
+broken 's/"file": "steel_[123].csv"/"file": "bias_10_1.csv"/' tests.json \
+  'is `compliance` of this machine?'
+broken '60s/,[0-9.]+$/,1e9/' tension_2_1.csv ':60: force: 1e+09 N is more than this specimen bears'
+broken '60s/,[0-9.]+$/,400/' tension_2_1.csv ':60: force: 400 N lies far above the rows before and after it'
+broken '60s/,([0-9]+)[.]/,\1,/' tension_2_1.csv ':60: has 4 cells, but line 2 names 3 columns'
+broken '1,2!s/,[0-9.-]+$/,5/' tension_2_1.csv ':3: force: 5 N is the largest one: no curve lies before it'
+broken '1,2!s/;.*/;0/' strip_70.csv "is less than 1 % of the strip's length"
+rm -rf spoilt && cp -r data spoilt && truncate -s 200000 spoilt/strip_20.pgm
+refuse 'strip_20.pgm: cannot be read as an image: it is cut off' characterise spoilt/tests.json
+# One picture is no history.
+expect 3 characterise data/tests.json --out few --set 'tension=[]' --set 'bias_extension=[]' --set \
+  'cantilever=[{"length": "150 mm", "width": "25 mm", "scale": "0.2 mm", "frames": [{"file": "strip_01.pgm", "time": "0.4 s"}]}]'
+grep -q 'was seen at 1 times' stderr || fail "one picture: $(head -c 300 stderr)"
+# A strip's shape at rest, which is a parabola here: it is shown, and nothing of the material is taken from it.
+{ echo 'x (mm),Deflection (mm)'; for k in {0..100}; do echo "$k,$((k * k * 6))e-3"; done; } >data/shape.csv
+expect 0 characterise data/tests.json --set 'tension=[]' --set 'bias_extension=[]' --set \
+  'cantilever=[{"length": "120 mm", "width": "25 mm", "profile": "shape.csv"}]' --out shape --json
+within stdout /profile/0/drop 0.0599 0.0601
+within stdout /profile/0/curvature/8 5 15
+within stdout /profile/0/material/drop 0.03 0.08
+lacks stdout /compression /cantilever
+grep -q 'from the profile' shape/characterisation.html || fail "the page lacks the profile"
+for field in 'gravity=1e-320 m/s^2' 'thickness=1e-9 mm' 'areal_density=1e-300 g/m^2'; do
+  refuse "/${field%=*}: " characterise data/tests.json --set "$field"
+done
 refuse 'none.json: cannot be read' characterise none.json
 refuse 'is not tested' characterise data/tests.json --set assumed=null --set 'cantilever=[]'
 refuse 'must be given or assumed' characterise data/tests.json --set assumed=null
-finish 42
+finish 61

@@ -64,8 +64,18 @@ for verb in map reach simulate plan bench study check characterise; do
   denied 2 '--threads' "${words[@]}" "${place[@]}" --threads 0
 done
 denied 2 '/ply/widht: unknown key' map "$quick" --set 'ply.widht=1 mm' --out refused
-denied 2 'folder: is a folder, not a file' characterise tests.json --out refused \
+denied 2 'folder: cannot be read: it is a folder' characterise tests.json --out refused \
   --set 'tension=[{"file": "folder", "width": "25 mm", "height": "150 mm", "rate": "2 mm/min"}]'
+mkfifo pipe
+for place in pipe /dev/zero; do
+  denied 2 "$place: cannot be read: it is no regular file" characterise tests.json --out refused \
+    --set 'tension=[{"file": "'$place'", "width": "25 mm", "height": "150 mm", "rate": "2 mm/min"}]'
+  denied 2 "$place: cannot be read as an image: it is no regular file" characterise tests.json --out refused \
+    --set 'cantilever=[{"length": "150 mm", "width": "25 mm", "scale": "1 mm", "frames": [{"file": "'$place'", "time": "1 s"}]}]'
+  denied 2 '"'$place'" cannot be read: it is no regular file' characterise tests.json --set assumed=$place --out refused
+  denied 2 'cannot be read: it is no regular file' check "$quick" --set "material=$(realpath $place)"
+done
+denied 2 '/dev/zero: cannot be read: it is larger than 256 MB' check /dev/zero
 denied 2 'no scene' stress --only 'no such scene' --out refused
 denied 2 '--set and --seed' stress --set fem.rates=false --out refused
 denied 2 'no comparison' validate --only 'no such comparison' --out refused
@@ -126,6 +136,12 @@ if ! grep -q __asan_init "$program" && ! grep -q __tsan_init "$program"; then
     rm -rf refused
   done
 fi
+
+# A limit on the size of files is named.
+(ulimit -f 4 && "$program" simulate "$quick" "${coarse[@]}" --quiet --out refused >stdout 2>stderr)
+same $? 3 "exit code with a limit on files"
+grep -q 'File too large' stderr || fail "the limit on files is not named: $(head -c 400 stderr)"
+rm -rf refused
 
 # Streams that are closed or whose reader is gone: the results are on disk all the same.
 run_drape=(simulate "$quick" "${coarse[@]}" --frames 2)

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -11,6 +12,7 @@
 #include "planner/base/json_text.hpp"
 #include "planner/case/file.hpp"
 #include "planner/schedule/file.hpp"
+#include "planner/tables/test_table.hpp"
 
 namespace drapeplan {
 namespace {
@@ -27,7 +29,8 @@ std::string damaged(std::string text, std::mt19937& random) {
       "\"",    "\\",      "null",    "-",        "1e400", "1e-400",
       "\xff",  "mm",      "0",       "\n",       "\0"s,   "\xEF\xBB\xBF",
       "true",  "\\u0000", "\\ud800", "\xC3\xA9", "{}",    "[[[[[[",
-      "1e308", "-1",      "\"x\":",  "\"\"",     "/**/",  "99999999999999999999"};
+      "1e308", "-1",      "\"x\":",  "\"\"",     "/**/",  "99999999999999999999",
+      "nan",   "inf",     ";",       "\t",       "\r",    "+-1"};
   const std::string original = text;
   for (int changes = 1 + int(random() % 3); changes > 0; --changes) {
     const size_t at = random() % text.size();
@@ -53,8 +56,9 @@ std::string damaged(std::string text, std::mt19937& random) {
 }
 
 /// Damages `original` so often and hands each file to `read`, which gives the errors that it found.
+/// @param fewest  share of files that must be refused: a text that says less of itself hides more damage.
 template <class Read>
-void damage_and_read(const std::string& original, int rounds, unsigned seed, const Read& read) {
+void damage_and_read(const std::string& original, int rounds, unsigned seed, const Read& read, double fewest = 0.5) {
   const fs::path file = fs::path(testing::TempDir()) / ("fuzz_test_" + std::to_string(::getpid()) + ".json");
   std::mt19937 random(seed);
   int refused = 0;
@@ -69,7 +73,7 @@ void damage_and_read(const std::string& original, int rounds, unsigned seed, con
     }
   }
   fs::remove(file);
-  EXPECT_GT(refused, rounds / 2);
+  EXPECT_GT(refused, fewest * rounds);
   EXPECT_LT(refused, rounds);
 }
 
@@ -108,6 +112,34 @@ TEST(DamagedInput, SchedulesAreReadOrRefusedWithPlaces) {
     }
     return reading.errors;
   });
+}
+
+TEST(DamagedInput, TablesAreFiniteOrRefusedWithTheirLine) {
+  const std::vector<WantedColumn> wanted{
+      {TestQuantity::time}, {TestQuantity::displacement, true}, {TestQuantity::force, true}};
+  std::string points = "Specimen,A 1\r\n\r\n\"Time\",\"Extension\",\"Load\"\r\n\"(s)\",\"(mm)\",\"(kN)\"\r\n";
+  std::string commas = "Notiz\nZeit [s];Standardweg [mm];Standardkraft [N]\n";
+  std::string tabs = "Load\tTime\tCrosshead\nN\tsec\tmm\n";
+  for (int k = 0; k < 12; ++k) {
+    const std::string n = std::to_string(k);
+    points += "\"" + n + ".5\",\"1e-" + n + "\",\"-0.0" + n + "\"\r\n";
+    commas += n + ",25;0," + n + ";+" + n + "\n";
+    tabs += n + "\t" + n + ".5\t-" + n + "e2\n";
+  }
+  unsigned seed = 11;
+  for (const std::string& original : {points, commas, tabs}) {
+    damage_and_read(original, 500, seed++, [&wanted](const fs::path& file) {
+      const TableReading reading = read_test_table(file, wanted);
+      for (const InputError& error : reading.errors) EXPECT_TRUE(error.file == file.string() && error.line > 0);
+      if (!reading.errors.empty()) return reading.errors;
+      EXPECT_GE(reading.table.rows(), kFewestTestRows);
+      for (const auto& [quantity, column] : reading.table.columns) {
+        EXPECT_EQ(column.size(), reading.table.rows());
+        for (const double value : column) EXPECT_TRUE(std::isfinite(value));
+      }
+      return reading.errors;
+    }, 0.3);
+  }
 }
 
 }  // namespace

@@ -55,6 +55,24 @@ TEST(TestTable, ReadsWhatMachinesWrite) {
   EXPECT_DOUBLE_EQ(own.table[TestQuantity::displacement][2], 2e-6);
 }
 
+TEST(TestTable, IsNotMisledBySeparatorsInNotes) {
+  for (const char* note : {"Made by us; in May\n", "Made\tby us\n", "\"Made by us; in May\"\n"}) {
+    const TableReading reading =
+        read(note + std::string("Extension (mm),Load (N)\n") +
+             rows([](int k) { return std::to_string(k) + ",1.5,\n"; }));
+    ASSERT_TRUE(reading.errors.empty()) << reading.errors.front().text();
+    EXPECT_DOUBLE_EQ(reading.table[TestQuantity::force][4], 1.5);
+  }
+}
+
+TEST(TestTable, IsARegularFile) {
+  for (const char* name : {"/dev/zero", "/dev/null"}) {
+    const TableReading reading = read_test_table(name, kWanted);
+    ASSERT_EQ(reading.errors.size(), 1U);
+    EXPECT_EQ(reading.errors.front().message, "cannot be read: it is no regular file");
+  }
+}
+
 TEST(TestTable, SaysWhatIsWrongAndWhere) {
   const auto error = [](const std::string& text) {
     const TableReading reading = read(text);
@@ -76,6 +94,21 @@ TEST(TestTable, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(error(std::string("\xFF\xFE" "a\0", 4)).find("UTF-16"), std::string::npos);
   EXPECT_NE(error("Extension [mm];Load [N]\n" + rows([](int) { return std::string("1.234,5;1\n"); }))
                 .find("\"1.234,5\" is no number"),
+            std::string::npos);
+  const std::string machine = "Extension [mm];Load [N]\n";
+  const auto mixed = [](int k) { return k == 7 ? std::string("1.007;1\n") : std::to_string(k) + ",5;1\n"; };
+  EXPECT_NE(error(machine + rows(mixed)).find(":9: Extension: \"1.007\" has a decimal point, but line 2 a decimal comma"),
+            std::string::npos);
+  EXPECT_NE(error("Extension (mm),Load (N)\n" + good + "1,5,2\n").find(":14: has 3 cells, but line 1 names 2 columns"),
+            std::string::npos);
+  EXPECT_NE(error("Extension (mm),Load (N)\n" + good + "13,+-1\n").find("\"+-1\" is no number"), std::string::npos);
+  EXPECT_NE(error("Extension (mm),Load (N)\n" + good + "nan,1\n").find("\"nan\" is no finite"), std::string::npos);
+  EXPECT_NE(error("Extension (mm),Load (kN)\n" + good + "13,1e308\n").find(":14: Load: \"1e308\" is no finite number"),
+            std::string::npos);
+  EXPECT_NE(error(std::string("Extension (mm),Load (N)\n1,\0001\n", 30)).find(":2: has a NUL byte"), std::string::npos);
+  EXPECT_NE(error(std::string(5000, ',')).find(":1: has more than 1000 columns"), std::string::npos);
+  EXPECT_NE(error("Extension (mm),Load (N)\n" + good + std::string(5000, 'x') + "\x1b,1\n")
+                .find(std::string(40, 'x') + "..."),
             std::string::npos);
 }
 
