@@ -129,7 +129,7 @@ void visit_tests(FieldVisitor& v, Tests& tests) {
   v.field({"section_points", &tests.section_points,
            "Of simulated cantilevers, 3 or 5: those of the cases that will use the material (`fem.section_points`). "
            "Three see so little of a compression curve with a break that a strip of 150 mm drops 7 mm deeper",
-           Dimension::none, from(3, 5)});
+           Dimension::none, {3, 5, false, false, true}});
   v.field({"shear_measure", choice(tests.shear_measure, {"conjugate", "force"}),
            "Of the material's shear curves, see material.shear.measure"});
   v.field({"shear_rates", choice(tests.shear_rates, {"law", "article"}),
