@@ -1,5 +1,6 @@
 // Pictures of strips, and the shapes, strains and rates that are read from them.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
@@ -42,7 +43,8 @@ TEST(StripImage, HasTheMiddleOfTheStrip) {
 }
 
 TEST(StripImage, ReadsAPgmFileAndSaysWhatIsWrong) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "strip.pgm";
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / ("strip_" + std::to_string(::getpid()) + ".pgm");
   const GreyImage image = drawn(parabola, 600);
   std::ofstream(file, std::ios::binary) << "P5 900 600 255\n"
                                         << std::string(image.levels.begin(), image.levels.end());
@@ -64,15 +66,17 @@ TEST(StripImage, ReadsAPgmFileAndSaysWhatIsWrong) {
   EXPECT_NE(written("P5 # a comment\n900 600 255\n" + std::string(900 * 599, 'a')).find("it is cut off"),
             std::string::npos);
   EXPECT_NE(written("P5 30000 30000 255\nabc").find("it is cut off"), std::string::npos);
-  EXPECT_NE(written("P5 900 600 65535\n" + std::string(2 * 900 * 600, 'a')).find("white is 65535; expected 255"),
-            std::string::npos);
+  EXPECT_NE(
+      written("P5 900 600 65535\n" + std::string(2 * 900 * 600, 'a')).find("white is 65535; expected 255"),
+      std::string::npos);
   EXPECT_NE(written("P6 10 10 255\n" + std::string(100, 'a')).find("it is cut off"), std::string::npos);
   EXPECT_NE(written("P5 7").find("white is 0"), std::string::npos);
   EXPECT_NE(written("\xFF\xD8\xFF\xDA" + std::string(100, 'a')).find("it is cut off"), std::string::npos);
   EXPECT_NE(reason([] { (void)read_image("/dev/zero"); }).find("no regular file"), std::string::npos);
   GreyImage cut = image;
   cut.height = 200;
-  EXPECT_NE(reason([&] { strip_midline(cut, {.scale = kScale}); }).find("reaches the lower edge"), std::string::npos);
+  EXPECT_NE(reason([&] { strip_midline(cut, {.scale = kScale}); }).find("reaches the lower edge"),
+            std::string::npos);
   const GreyImage black{900, 600, std::vector<std::uint8_t>(900 * 600, 10)};
   EXPECT_NE(reason([&] { strip_midline(black, {.scale = kScale}); }).find("shows no strip: nothing"),
             std::string::npos);

@@ -1,8 +1,10 @@
-// The file of tests: what belongs to which test, data that cannot be right, and a strip whose shape was measured.
+// The file of tests: what belongs to which test, data that cannot be right, and a strip whose shape was
+// measured.
 #include "planner/measured/tests_file.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <functional>
@@ -32,7 +34,8 @@ class TestsFile : public testing::Test {
   [[nodiscard]] TestsReading read(const std::string& test) const {
     write("tests.json", fmt::format(R"({{"format": "drapeplan-tests 1", "thickness": "0.3 mm",
       "areal_density": "314 g/m^2", "assumed": "{}/cases/materials/bmi-4hs.json",
-      {}}})", DRAPEPLAN_SOURCE_DIR, test));
+      {}}})",
+                                    DRAPEPLAN_SOURCE_DIR, test));
     return read_tests(folder_ / "tests.json");
   }
 
@@ -41,7 +44,7 @@ class TestsFile : public testing::Test {
     return reading.errors.empty() ? "none" : reading.errors.front().text();
   }
 
-  const fs::path folder_ = fs::path(testing::TempDir()) / "tests_file_test";
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("tests_file_test_" + std::to_string(::getpid()));
 };
 
 /// The strip at rest that the shipped material makes.
@@ -68,7 +71,8 @@ std::string profile_table(const StripAtRest& strip, double noise, unsigned seed)
   return text;
 }
 
-const char* const kProfile = R"("cantilever": [{"length": "150 mm", "width": "25 mm", "profile": "shape.csv"}])";
+const char* const kProfile =
+    R"("cantilever": [{"length": "150 mm", "width": "25 mm", "profile": "shape.csv"}])";
 
 TEST_F(TestsFile, GivesTheBendingLawOfAMeasuredProfile) {
   write("shape.csv", "");
@@ -85,7 +89,8 @@ TEST_F(TestsFile, GivesTheBendingLawOfAMeasuredProfile) {
     const double largest = truth.law(truth.rest.moment.front());
     for (const double share : {0.2, 0.4, 0.6, 0.8, 1.0}) {
       const double moment = share * truth.rest.moment.front();
-      EXPECT_NEAR(profile.law(moment), truth.law(moment), 0.05 * largest) << share << " of the moment, seed " << seed;
+      EXPECT_NEAR(profile.law(moment), truth.law(moment), 0.05 * largest)
+          << share << " of the moment, seed " << seed;
     }
     const double load = kGravity * reading.tests.areal_density;
     EXPECT_NEAR(strip_at_rest(profile.law, kLength, load).tip(), truth.rest.tip(), 0.01 * truth.rest.tip());
@@ -103,13 +108,18 @@ TEST_F(TestsFile, RefusesAProfileThatIsNone) {
   write("shape.csv", good);
   ASSERT_EQ(error(kProfile), "none");
   EXPECT_NE(error(R"("cantilever": [{"length": "120 mm", "width": "25 mm", "profile": "shape.csv"}])")
-                .find("the strip is 150 mm long up to this place, not 120 mm"), std::string::npos);
-  EXPECT_NE(error(R"("cantilever": [{"length": "150 mm", "width": "25 mm", "profile": "shape.csv", "file": "a.csv"}])")
-                .find("needs one of three"), std::string::npos);
+                .find("the strip is 150 mm long up to this place, not 120 mm"),
+            std::string::npos);
+  EXPECT_NE(
+      error(
+          R"("cantilever": [{"length": "150 mm", "width": "25 mm", "profile": "shape.csv", "file": "a.csv"}])")
+          .find("needs one of three"),
+      std::string::npos);
   EXPECT_NE(error(R"("cantilever": [{"length": "150 mm", "width": "25 mm"}])").find("needs one of three"),
             std::string::npos);
   write("shape.csv", good + "10;3\n");
-  EXPECT_NE(error(kProfile).find("shape.csv:103: distance: does not increase"), std::string::npos) << error(kProfile);
+  EXPECT_NE(error(kProfile).find("shape.csv:103: distance: does not increase"), std::string::npos)
+      << error(kProfile);
   write("shape.csv", names + "0;0\n150;80\n");
   EXPECT_NE(error(kProfile).find("it needs 20 at least"), std::string::npos);
   std::string flat = names, up = names;
@@ -132,11 +142,14 @@ TEST_F(TestsFile, RefusesForcesThatNoSpecimenHas) {
   EXPECT_EQ(with([](int k) { return 2.0 * k; }, tension), "none");
   EXPECT_NE(with([](int) { return 0.0; }, tension).find("0 N is the largest one"), std::string::npos);
   EXPECT_NE(with([](int k) { return -2.0 * k; }, tension).find("Pulling forces are > 0"), std::string::npos);
-  EXPECT_NE(with([](int) { return 5.0; }, tension).find("pull.csv:2: force: 5 N is the largest one: no curve"),
-            std::string::npos);
+  EXPECT_NE(
+      with([](int) { return 5.0; }, tension).find("pull.csv:2: force: 5 N is the largest one: no curve"),
+      std::string::npos);
   EXPECT_NE(with([](int k) { return 1e-6 * k; }, tension).find("is no force of a test"), std::string::npos);
-  EXPECT_NE(with([](int k) { return 1e6 * k; }, tension).find("is more than this specimen bears"), std::string::npos);
-  EXPECT_NE(with([](int k) { return k == 30 ? 1e3 : 2.0 * k; }, tension).find("pull.csv:32: force: 1000 N lies far"),
+  EXPECT_NE(with([](int k) { return 1e6 * k; }, tension).find("is more than this specimen bears"),
+            std::string::npos);
+  EXPECT_NE(with([](int k) { return k == 30 ? 1e3 : 2.0 * k; }, tension)
+                .find("pull.csv:32: force: 1000 N lies far"),
             std::string::npos);
   const std::string still = "Time (s),Extension (mm),Load (N)\n";
   std::string text = still;
@@ -145,14 +158,16 @@ TEST_F(TestsFile, RefusesForcesThatNoSpecimenHas) {
   const TestsReading reading = read(tension);
   ASSERT_EQ(reading.errors.size(), 1U) << "what follows from the first fault is not said";
   EXPECT_NE(reading.errors.front().text().find("pull.csv:3: time: does not increase"), std::string::npos);
-  EXPECT_NE(error(R"("tension": [{"file": "pull.csv", "width": "1 um", "height": "150 mm", "rate": "2 mm/min"}])")
-                .find("/tension/0/width: \"1 um\": is less than 0.02 of the height"), std::string::npos);
+  EXPECT_NE(
+      error(R"("tension": [{"file": "pull.csv", "width": "1 um", "height": "150 mm", "rate": "2 mm/min"}])")
+          .find("/tension/0/width: \"1 um\": is less than 0.02 of the height"),
+      std::string::npos);
 }
 
 TEST_F(TestsFile, RefusesTipsThatDoNotMove) {
   const char* const strip = R"("cantilever": [{"length": "150 mm", "width": "25 mm", "file": "tip.csv"}])";
-  for (const auto& [factor, unit, reason] :
-       {std::tuple(0.0, 1.0, "too little to be measured"), {1.0, 1e9, "s after the first row: the wrong unit"}}) {
+  for (const auto& [factor, unit, reason] : {std::tuple(0.0, 1.0, "too little to be measured"),
+                                             {1.0, 1e9, "s after the first row: the wrong unit"}}) {
     std::string text = "Time (s);Deflection (mm)\n";
     for (int k = 0; k < 20; ++k) text += fmt::format("{};{}\n", unit * k, factor * std::sqrt(k) * 10);
     write("tip.csv", text);
