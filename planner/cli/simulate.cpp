@@ -243,15 +243,19 @@ int simulate_drape(Case definition, const SimulateOptions& options) {
   json result = summary_json(drape.run.summary);
   add_stable_step(model, drape.run, result);
   add_scores(drape.score, drape.other, result);
-  const Acceptance acceptance = acceptance_of(problem, drape, options.fidelity);
-  result["acceptance"] = acceptance_json(acceptance);
+  std::string verdict;  // of a run that has ended
+  if (drape.run.summary.status != RunStatus::paused) {
+    const Acceptance acceptance = acceptance_of(problem, drape, options.fidelity);
+    result["acceptance"] = acceptance_json(acceptance);
+    verdict = acceptance_text(acceptance) + "\n";
+  }
   const std::vector<std::string> warnings = range_warnings(problem.definition().material_notes, drape.score);
   print_warnings(warnings, options.common);
   result["warnings"] = warnings;
   result["terms"] = model.term_names();
   add_probes(recorder, result);
   const std::string text = summary_text(drape.run.summary, model.node_count()) + score_line(drape) +
-                           probes_text(recorder.history()) + acceptance_text(acceptance) + "\n";
+                           probes_text(recorder.history()) + verdict;
   keep_all([&] { save(options, model, drape.run.state, &schedule); },
            [&] {
              if (files) write_drape(options.common.out, problem, drape, schedule, recorder, options);

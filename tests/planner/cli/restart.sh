@@ -12,6 +12,7 @@ expect 0 simulate "$quick" --json
 cp "$work/stdout" "$work/whole.json"
 expect 0 simulate "$quick" --json --pause '4 s' --save "$work/first.state"
 same paused "$(value "$work/stdout" /status)" "status"
+lacks "$work/stdout" /acceptance  # a run that goes on has no verdict yet
 [ "$(hash_of "$work/stdout")" != "$(hash_of "$work/whole.json")" ] || fail "the pause did not pause"
 expect 0 simulate "$quick" --json --restart "$work/first.state" --pause '7.3 s' --save "$work/second.state"
 same paused "$(value "$work/stdout" /status)" "status"
