@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "mapping/error.hpp"
+#include "planner/base/statistics.hpp"
 
 namespace drapeplan {
 namespace {
@@ -23,9 +25,8 @@ double noise_of(const std::vector<double>& values) {
   std::vector<double> bends;
   for (size_t k = 2; k < values.size(); ++k) bends.push_back(std::abs(values[k] - 2 * values[k - 1] + values[k - 2]));
   if (bends.empty()) return 0;
-  std::nth_element(bends.begin(), bends.begin() + std::ptrdiff_t(bends.size() / 2), bends.end());
   constexpr double kMedian = 0.6745;  // of a normal distribution's magnitude, in standard deviations
-  return bends[bends.size() / 2] / (kMedian * std::sqrt(6.0));
+  return median(std::move(bends)) / (kMedian * std::sqrt(6.0));
 }
 
 /// displacement = begin + c force^(1/p), by least squares, for the power p from 1 to 3 that fits best.

@@ -31,10 +31,11 @@ class Checks {
   /// Times increase, and so does, but for noise, what moves. @param noise  that is possible, of the whole way.
   bool in_order(TestQuantity moves, double noise) {
     const std::vector<double>& way = table_[moves];
+    const double back = noise * range(way);
     for (size_t k = 1; k < table_.rows(); ++k) {
       if (table_.has(TestQuantity::time) && !(table_[TestQuantity::time][k] > table_[TestQuantity::time][k - 1]))
         return fail(k, TestQuantity::time, "does not increase: rows are not in their order, or columns are swapped");
-      if (way[k] < way[k - 1] - noise * range_of_way(way))
+      if (way[k] < way[k - 1] - back)
         return fail(k, moves,
                     fmt::format("jumps back from {:.4g} to {:.4g} mm: rows are not in their order, or the "
                                 "columns are swapped",
@@ -154,14 +155,8 @@ class Checks {
   std::vector<InputError> errors;
 
  private:
-  double range_of_way(const std::vector<double>& way) {
-    if (range_ < 0) range_ = range(way);
-    return range_;
-  }
-
   const TestTable& table_;
   const std::string& file_;
-  double range_ = -1;
 };
 
 }  // namespace

@@ -1,9 +1,8 @@
-// Which search method finds the best schedule within a number of evaluations: all of them on the same
-// subjects, from the same starts, with equal budgets. Usage: method_bench OUT_DIR [--seeds N] [--evaluations
-// N] [--threads N] [CASE...] Without cases: functions of starts and heights with a known optimum and noise.
-// Cases are played at their cheapest fidelity. Writes methods.csv (one line per subject, method, seed and
-// checkpoint) and profile.svg, prints a table. What was found is kept in traces.jsonl: a bench that was
-// stopped, or that is given more seeds, goes on.
+// Which search method finds the best schedule within a number of evaluations: all of them on the same subjects, from
+// the same starts, with equal budgets. Usage: method_bench OUT_DIR [--seeds N] [--evaluations N] [--threads N]
+// [CASE...] Without cases: functions of starts and heights with a known optimum and noise. Cases are played at their
+// cheapest fidelity. Writes methods.csv (one line per subject, method, seed and checkpoint) and profile.svg, prints a
+// table. What was found is kept in traces.jsonl: a bench that was stopped, or that is given more seeds, goes on.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -39,9 +38,8 @@ namespace drapeplan {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// A subject counts as solved once this share of the way from the start to the best that any method found is
-/// all that is left (J. J. More and S. M. Wild, "Benchmarking derivative-free optimization algorithms",
-/// 2009).
+/// A subject counts as solved once this share of the way from the start to the best that any method found is all that
+/// is left (J. J. More and S. M. Wild, "Benchmarking derivative-free optimization algorithms", 2009).
 constexpr double kSolved = 0.1;
 
 struct Seen {
