@@ -29,9 +29,13 @@ void hear(Event /*event*/) {}
 
 }  // namespace
 
+int thread_count(int threads) {
+  return threads > 0 ? threads : omp_get_max_threads();
+}
+
 void parallel_for(int count, const std::function<void(int)>& body, int threads) {
   if (count <= 0) return;
-  const int team = std::min(count, omp_in_parallel() ? 1 : threads > 0 ? threads : omp_get_max_threads());
+  const int team = std::min(count, omp_in_parallel() ? 1 : thread_count(threads));
   std::vector<std::exception_ptr> thrown(static_cast<size_t>(count));
   say(team_starts);
 #pragma omp parallel num_threads(team) if (team > 1)

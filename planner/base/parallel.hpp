@@ -11,4 +11,7 @@ namespace drapeplan {
 /// @param threads  largest number of threads; 0: OpenMP's default.
 void parallel_for(int count, const std::function<void(int)>& body, int threads = 0);
 
+/// How many threads that number means. @param threads  0: OpenMP's default.
+int thread_count(int threads);
+
 }  // namespace drapeplan

@@ -171,6 +171,8 @@ void complete_case(CaseFields& fields) {
   }
   if (fields.damping) c.damping = alpha_of(*fields.damping, fields.material);
   if (fields.mold) c.mold.emplace(shape_of(*fields.mold), fields.mold->extent);
+  c.chooses_fidelities = !fields.states_numerics && c.grippers && c.mold && fields.material;
+  if (c.chooses_fidelities) c.fidelities = fidelities_from_sizes(c);
   c.fidelities.try_emplace("report", fields.fem);
 }
 

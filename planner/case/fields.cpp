@@ -125,6 +125,10 @@ void visit_score(FieldVisitor& v, ScoreOptions& s) {
            {0, 90, true, true}});
   v.field(
       {"strain_limit", &s.strain_limit, "Fibre strain above it is penalised", Dimension::none, positive(1)});
+  v.field({"kinetic_limit", &s.kinetic_limit,
+           "Of the ply's kinetic over its internal energy, at the end of each tenth of a run but the first; a drape above "
+           "it was thrown and has no score",
+           Dimension::none, positive(1e9)});
   v.field({"lag_tolerance", &s.lag_tolerance,
            "How far joints may be behind their commands before their pads touch; a schedule that misses its "
            "commands by more is no candidate",

@@ -2,6 +2,7 @@
 // defaults, the schema, `explain` and the error messages are visitors of this one statement.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -68,6 +69,7 @@ struct CaseFields {
   std::optional<double> width, height;  ///< of a rectangular ply
   std::optional<DampingFields> damping;
   FemOptions fem;
+  bool states_numerics = true;  ///< has `fem` or `fidelities`
 };
 
 inline constexpr const char* kCaseFormat = "drapeplan-case 1";
@@ -89,6 +91,10 @@ Curve scaled(const Curve& curve, double factor);
 
 /// [Krogh], Eq. (5): lowest angular frequency of a clamped strip [1/s]. @param stiffness  D per width [N m].
 double strip_frequency(double stiffness, double areal_density, double length);
+
+/// `screen`, `search` and `report` of a drape whose file names no numerical settings, from the sizes of its rig, its
+/// mold and its schedule. @param definition  complete, with grippers and mold.
+std::map<std::string, FemOptions> fidelities_from_sizes(const Case& definition);
 
 /// Fields into a case and back. `complete` expects fields without errors.
 void complete_case(CaseFields& fields);

@@ -18,6 +18,7 @@ CaseReading read_document(const InputDocument& document, const std::string& name
   if (!document.root().is_object()) return reading;
   CaseFields fields;
   fields.definition.name = name;
+  fields.states_numerics = document.root().contains("fem") || document.root().contains("fidelities");
   FieldReader reader(document);
   reader.read([&fields](FieldVisitor& visitor) { visit_case(visitor, fields); });
   if (fields.material) reading.notes = read_curve_files(*fields.material, "/material", reader);

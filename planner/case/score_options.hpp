@@ -12,6 +12,8 @@ struct ScoreOptions {
   double strain_limit = 0.02;             ///< fibre strain above it is penalised [-]
   /// Of joints behind their commands before they touch; a schedule above it is no candidate [m].
   double lag_tolerance = 0.010;
+  /// Of the ply's kinetic over its internal energy; a drape above it was thrown and has no score [-].
+  double kinetic_limit = 1;
   double weight_max_gap = 1;
   double weight_rms_gap = 1;
   double weight_wrinkled_area = 1;  ///< reference: 1 % of the ply's area

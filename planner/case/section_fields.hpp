@@ -1,4 +1,4 @@
-// Fields of what a case is made of: the fabric, its damping and the mold; parts of the one statement of
+// Fields of what a case is made of: fabric, damping, mold and gripper grid; parts of the one statement of
 // fields.hpp.
 #pragma once
 

@@ -14,9 +14,11 @@
 #include "planner/cli/process.hpp"
 #include "planner/drape/acceptance.hpp"
 #include "planner/drape/result_fields.hpp"
+#include "planner/drape/run_checks.hpp"
 #include "planner/report/run_files.hpp"
 #include "planner/search/finalists.hpp"
 #include "planner/search/plan.hpp"
+#include "planner/trust/choice.hpp"
 
 namespace drapeplan {
 namespace {
@@ -132,7 +134,7 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result) {
              {"meaning", explain_reach(problem.reach_problem(), problem.reach())}};
   json best{{"candidate", search.best.name}};
   add_scores(result.best.score, result.best.other, best);
-  best["warnings"] = range_warnings(problem.definition().material_notes, result.best.score);
+  best["warnings"] = drape_warnings(problem, result.best, search.best_fidelity);
   best["fidelity"] = search.best_fidelity;
   best["acceptance"] = acceptance_json(acceptance_of(problem, result.best, search.best_fidelity));
   if (result.best.score.valid) best["schedule"] = "schedule.json";
@@ -191,30 +193,46 @@ std::string result_text(const DrapeProblem& problem, const PlanResult& result,
   return text + "\n";
 }
 
+/// What cannot be built is found before anything is written.
+void build_models(const DrapeProblem& problem) {
+  std::vector<std::string> fidelities = plan_ladder(problem.definition());
+  fidelities.emplace_back(kReport);
+  for (const std::string& fidelity : fidelities) static_cast<void>(problem.model(fidelity));
+}
+
 /// Plans one case into its folder; throws what went wrong.
 PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFolder& out) {
   const bool talk = !options.common.quiet;
-  const DrapeProblem problem(std::move(definition));
-  std::vector<std::string> fidelities = plan_ladder(problem.definition());
-  fidelities.emplace_back(kReport);
-  for (const std::string& fidelity : fidelities)
-    static_cast<void>(problem.model(fidelity));  // what cannot be built is found before anything is written
-  if (talk) print_start(problem);
-  print_warnings(map_warnings(problem.definition(), problem.mapping()), options.common);
+  auto problem = std::make_unique<const DrapeProblem>(definition);
+  build_models(*problem);
+  if (talk) print_start(*problem);
+  print_warnings(map_warnings(problem->definition(), problem->mapping()), options.common);
   ProgressLine line;
+  const auto show = [&](const Progress& progress) {
+    if (talk) line(progress);
+  };
   const InterruptGuard guard;
   const PlanOptions planning{
       .resume = options.resume,
       .threads = options.common.threads,
       .stop = [] { return InterruptGuard::interrupted(); },
       .moved = [&](const std::filesystem::path& earlier) { print_set_aside(earlier, options.common); }};
-  const PlanResult result = plan(problem, out, planning, [&](const Progress& progress) {
-    if (talk) line(progress);
-  });
-  const DrapeProblem& planned = planned_problem(problem, result);
+  EvaluationLog log = start_log(problem->definition(), out, planning);
+  std::optional<FidelityChoice> choice;
+  if (definition.chooses_fidelities) {
+    choice = choose_fidelities(definition, log, planning.threads, planning.stop, show);
+    definition.fidelities = choice->fidelities();
+    problem = std::make_unique<const DrapeProblem>(definition);
+    write_resolved(problem->definition(), out);
+    if (talk) std::cerr << choice_table(*choice, definition.optimise, planning.threads);
+  }
+  const PlanResult result = plan(*problem, log, planning, show);
+  const DrapeProblem& planned = planned_problem(*problem, result);
+  print_warnings(drape_warnings(planned, result.best, result.search.best_fidelity), options.common);
   if (result.best.score.valid)
-    write_plan(out.path(), planned, result);  // no schedule for a robot from failed runs
+    write_plan(out.path(), planned, result, choice ? &*choice : nullptr);  // no schedule for a robot from failed runs
   json document = plan_json(planned, result);
+  if (choice) document["numerics"] = choice_json(*choice);
   write_text(out.path() / "result.json", document_text(document));
   return {.result = std::move(document),
           .text = result_text(planned, result, out.path()),

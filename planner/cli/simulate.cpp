@@ -13,6 +13,7 @@
 #include "planner/drape/acceptance.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/drape/result_fields.hpp"
+#include "planner/drape/run_checks.hpp"
 #include "planner/report/run_files.hpp"
 #include "planner/report/vtu.hpp"
 #include "planner/schedule/check.hpp"
@@ -249,7 +250,7 @@ int simulate_drape(Case definition, const SimulateOptions& options) {
     result["acceptance"] = acceptance_json(acceptance);
     verdict = acceptance_text(acceptance) + "\n";
   }
-  const std::vector<std::string> warnings = range_warnings(problem.definition().material_notes, drape.score);
+  const std::vector<std::string> warnings = drape_warnings(problem, drape, options.fidelity);
   print_warnings(warnings, options.common);
   result["warnings"] = warnings;
   result["terms"] = model.term_names();

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fem/mesh/mesh.hpp"
-#include "planner/drape/scoring.hpp"
+#include "planner/score/scoring.hpp"
 
 namespace drapeplan {
 namespace {

@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
-#include <numbers>
 
 #include "mapping/error.hpp"
-#include "planner/base/quantity.hpp"
-#include "planner/drape/scoring.hpp"
+#include "planner/drape/run_checks.hpp"
+#include "planner/score/scoring.hpp"
 
 namespace drapeplan {
 namespace {
@@ -283,6 +282,8 @@ Drape DrapeProblem::run_for_objective(const Schedule& schedule, const std::strin
 Score DrapeProblem::score_at(const Model& model, const RunResult& run, const Snapshot& ply,
                              const RunRecord& seen, double duration) const {
   if (run.summary.status != RunStatus::done) return failed_score(run.summary.message);
+  if (run.summary.largest_kinetic_ratio > case_.score.kinetic_limit)
+    return failed_score(thrown_text(run.summary.largest_kinetic_ratio, case_.score.kinetic_limit));
   // A gap is never negative: a ply that ended inside the mold would look perfectly draped.
   if (run.summary.largest_penetration > case_.material.thickness)
     return failed_score(fmt::format("the ply came {:f} mm inside the mold: more than its thickness",
@@ -295,24 +296,6 @@ Score DrapeProblem::score_at(const Model& model, const RunResult& run, const Sna
                              .duration = duration};
   return score_drape(model.scene().mesh, ply, *case_.mold, map_.boundary, case_.material.thickness,
                      case_.score, extremes);
-}
-
-std::vector<std::string> range_warnings(const MaterialNotes& material, const Score& score) {
-  std::vector<std::string> warnings;
-  const auto look = [&](const char* what, double reached, const char* curve, const CurveNotes& notes,
-                        Dimension dimension) {
-    if (!score.valid || !notes.valid_to || !(reached > *notes.valid_to)) return;
-    const auto text = [dimension](double value) {
-      return dimension == Dimension::angle ? fmt::format("{:.1f} deg", value * 180 / std::numbers::pi)
-                                           : fmt::format("{:.3g} %", 1e2 * value);
-    };
-    warnings.push_back(fmt::format("the largest {} is {}, beyond what material.{} holds for ({})", what,
-                                   text(reached), curve, text(*notes.valid_to)));
-  };
-  look("shear", score.max_shear_deg * std::numbers::pi / 180, "shear", material.shear, Dimension::angle);
-  look("fibre tension", score.max_fibre_strain, "tension", material.tension, Dimension::strain);
-  look("fibre compression", score.max_fibre_compression, "compression", material.compression, Dimension::strain);
-  return warnings;
 }
 
 }  // namespace drapeplan

@@ -14,11 +14,11 @@
 #include "fem/run/simulate.hpp"
 #include "planner/case/case.hpp"
 #include "planner/drape/map_result.hpp"
-#include "planner/drape/score.hpp"
-#include "planner/drape/score_fields.hpp"
 #include "planner/reach/floor.hpp"
 #include "planner/reach/reach.hpp"
 #include "planner/schedule/strategy.hpp"
+#include "planner/score/score.hpp"
+#include "planner/score/score_fields.hpp"
 
 namespace drapeplan {
 
@@ -133,9 +133,5 @@ class DrapeProblem {
   std::map<std::string, std::unique_ptr<Lazy<ScoreFields::Sampling>>> samplings_;
   std::map<std::string, std::unique_ptr<Lazy<Model>>> models_;
 };
-
-/// What a drape asked of the material beyond what its curves are known to hold for (`valid_to`): one text for each
-/// such curve; none of a score that is not valid.
-std::vector<std::string> range_warnings(const MaterialNotes& material, const Score& score);
 
 }  // namespace drapeplan

@@ -11,8 +11,8 @@
 #include <string>
 
 #include "fem/core/run_summary.hpp"
-#include "planner/drape/score.hpp"
 #include "planner/reach/floor.hpp"
+#include "planner/score/score.hpp"
 
 namespace drapeplan {
 

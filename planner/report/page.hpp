@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "planner/drape/score.hpp"
+#include "planner/score/score.hpp"
 
 namespace drapeplan {
 

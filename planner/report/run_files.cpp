@@ -16,11 +16,12 @@
 #include "planner/case/file.hpp"
 #include "planner/drape/acceptance.hpp"
 #include "planner/drape/result_fields.hpp"
-#include "planner/drape/scoring.hpp"
+#include "planner/drape/run_checks.hpp"
 #include "planner/report/charts.hpp"
 #include "planner/report/page.hpp"
 #include "planner/report/vtu.hpp"
 #include "planner/schedule/file.hpp"
+#include "planner/score/scoring.hpp"
 #include "planner/search/finalists.hpp"
 
 namespace drapeplan {
@@ -91,10 +92,10 @@ Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows, c
   return chart;
 }
 
-std::vector<std::string> notes_of(const DrapeProblem& problem, const Score& best) {
+std::vector<std::string> notes_of(const DrapeProblem& problem, const Drape& best, const std::string& fidelity) {
   std::vector<std::string> notes = map_warnings(problem.definition(), problem.mapping());
   const MaterialNotes& material = problem.definition().material_notes;
-  const std::vector<std::string> beyond = range_warnings(material, best);
+  const std::vector<std::string> beyond = drape_warnings(problem, best, fidelity);
   notes.insert(notes.end(), beyond.begin(), beyond.end());
   for (const std::string* source :
        {&material.source, &material.tension.source, &material.compression.source, &material.shear.source}) {
@@ -239,9 +240,26 @@ void write_frames(const std::filesystem::path& folder, const std::string& name, 
 
 namespace {
 
+/// The numerical settings that a plan chose, and what is known of them.
+ReportTable choice_report(const FidelityChoice& choice) {
+  ReportTable table{.title = "Numerical settings",
+                    .caption = fmt::format("Chosen from {} runs in {:.0f} s. Errors are estimates, of the largest gap and "
+                                           "boundary offset. {}",
+                                           choice.runs, choice.seconds,
+                                           choice.ranked_against.empty()
+                                               ? std::string()
+                                               : "Ranks: Spearman's correlation with " + choice.ranked_against + "."),
+                    .head = {"fidelity", "setting", "error [%]", "ranks", "a run on one core [s]"},
+                    .rows = {}};
+  for (const ChosenFidelity& one : choice.chosen)
+    table.rows.push_back({.cells = {one.name, setting_text(one.options), fixed(1e2 * one.error, 1),
+                                    fixed(one.ranks, 2), fixed(one.seconds, 1)}});
+  return table;
+}
+
 /// The page of a plan. @param drape, sequence  pictures, as SVG.
-PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const std::string& drape,
-                   const std::string& sequence) {
+PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const FidelityChoice* choice,
+                   const std::string& drape, const std::string& sequence) {
   const RigOptions& rig = *problem.definition().grippers;
   const StagedResult& search = result.search;
   PlanReport report;
@@ -253,7 +271,11 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   report.reach = explain_reach(problem.reach_problem(), problem.reach()) + " " + problem.ply_floor().meaning;
   if (const std::string force = best_force_text(problem, result); !force.empty()) report.reach += " " + force;
   report.rows = rows_of(problem, result);
-  report.notes = notes_of(problem, result.best.score);
+  report.notes = notes_of(problem, result.best, search.best_fidelity);
+  if (choice) {
+    report.tables.push_back(choice_report(*choice));
+    if (!choice->message.empty()) report.notes.push_back(choice->message);
+  }
   report.figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", drape},
                     {"Who goes down when", sequence},
                     {"Heights of the joints over time",
@@ -289,7 +311,8 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
 
 }  // namespace
 
-void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result) {
+void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result,
+                const FidelityChoice* choice) {
   const RigOptions& rig = *problem.definition().grippers;
   const StagedResult& search = result.search;
   write_schedule(folder / "schedule.json", search.best.schedule, rig);
@@ -314,7 +337,7 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
   write_text(folder / "sequence.svg", sequence);
   if (result.design)
     write_text(folder / kDesignFile, dump_json(resolved_case(problem.definition()), 2) + "\n");
-  write_text(folder / "report.html", html_report(page_of(problem, result, drape, sequence)));
+  write_text(folder / "report.html", html_report(page_of(problem, result, choice, drape, sequence)));
 }
 
 std::string comparison_table(const DrapeProblem& problem, const PlanResult& result) {

@@ -7,7 +7,7 @@
 
 #include "mapping/error.hpp"
 #include "planner/base/parallel.hpp"
-#include "planner/drape/scoring.hpp"
+#include "planner/score/scoring.hpp"
 #include "planner/search/interrupted.hpp"
 
 namespace drapeplan {

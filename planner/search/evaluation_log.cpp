@@ -249,9 +249,14 @@ void EvaluationLog::remember(const Evaluation& evaluation) {
   ++size_;
 }
 
+void EvaluationLog::use_settings(std::uint64_t settings) {
+  const std::scoped_lock lock(mutex_);
+  settings_ = settings;
+}
+
 Outcome EvaluationLog::evaluate_once(std::uint64_t candidate, const std::string& fidelity,
                                      const std::function<Outcome()>& run) {
-  const Key key{candidate, fidelity};
+  const Key key{candidate ^ settings_, fidelity};
   {
     std::unique_lock lock(mutex_);
     finished_.wait(lock, [&] { return !running_.contains(key); });
@@ -288,7 +293,7 @@ void EvaluationLog::write(std::uint64_t candidate, const std::string& fidelity, 
   const std::scoped_lock lock(mutex_);
   double best = best_.contains(fidelity) ? best_[fidelity] : kInfinity;
   if (outcome.score.valid && outcome.score.objective < best) best = outcome.score.objective;
-  const Evaluation evaluation{last_number_ + 1, stage, fidelity, candidate, outcome, best};
+  const Evaluation evaluation{last_number_ + 1, stage, fidelity, candidate ^ settings_, outcome, best};
   if (file_.is_open()) {
     file_ << to_line(to_json(evaluation)) << std::flush;
     if (!file_) throw NotFinished(path_ + ": cannot be written (disk full?)");

@@ -16,7 +16,7 @@
 
 #include "fem/core/run_summary.hpp"
 #include "fem/rig/schedule.hpp"
-#include "planner/drape/score.hpp"
+#include "planner/score/score.hpp"
 
 namespace drapeplan {
 
@@ -63,6 +63,10 @@ class EvaluationLog {
   /// written.
   EvaluationLog(const std::string& path, std::uint64_t case_hash);
 
+  /// From now on names of fidelities stand for these settings: what was evaluated under the same name with others is
+  /// not known. @param settings  tells them apart; 0: the case says what names stand for.
+  void use_settings(std::uint64_t settings);
+
   /// The outcome of this candidate (the hash of its schedule, or of design and schedule) at this fidelity:
   /// the known one (cached = true), or that of `run`, which is called once even if several threads ask for it
   /// at the same time. What `run` throws passes; nothing is kept then.
@@ -90,6 +94,7 @@ class EvaluationLog {
   std::map<std::string, double> best_;  // per fidelity
   int last_number_ = 0, size_ = 0;
   std::optional<std::chrono::steady_clock::time_point> begin_;  ///< when it first ran something
+  std::uint64_t settings_ = 0;
   double before_ = 0;  ///< what its clock had shown when the file was opened [s]
   double latest_ = 0;  ///< of all evaluations [s]
   std::string path_;

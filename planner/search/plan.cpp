@@ -72,11 +72,20 @@ void erase_words(nlohmann::json& value) {
   }
 }
 
-/// The log of a run that starts now: a known one if it is resumed; whatever else the folder holds is set
-/// aside.
-EvaluationLog start_log(const DrapeProblem& problem, OutputFolder& out, const PlanOptions& options) {
+/// Tells evaluations apart whose fidelities have the same name and other settings: of a case that chooses them.
+std::uint64_t settings_hash(const Case& definition) {
+  if (!definition.chooses_fidelities) return 0;
+  Fnv1a hash;
+  const nlohmann::json resolved = resolved_case(definition);
+  hash.add(std::string_view(dump_json({resolved.at("fem"), resolved.value("fidelities", nlohmann::json())})));
+  return hash.value();
+}
+
+}  // namespace
+
+EvaluationLog start_log(const Case& definition, OutputFolder& out, const PlanOptions& options) {
   const std::string file = (out.path() / kEvaluations).string();
-  const std::uint64_t hash = case_hash(problem.definition());
+  const std::uint64_t hash = case_hash(definition);
   std::vector<std::string> kept;
   std::error_code error;
   if (options.resume && std::filesystem::exists(file, error)) {
@@ -85,14 +94,17 @@ EvaluationLog start_log(const DrapeProblem& problem, OutputFolder& out, const Pl
   }
   const std::filesystem::path earlier = out.begin(kept);
   if (!earlier.empty() && options.moved) options.moved(earlier);
-  write_text(out.path() / "resolved.json", dump_json(resolved_case(problem.definition()), 2) + "\n");
+  write_resolved(definition, out);
   return EvaluationLog(file, hash);
 }
 
-}  // namespace
+void write_resolved(const Case& definition, const OutputFolder& out) {
+  write_text(out.path() / "resolved.json", dump_json(resolved_case(definition), 2) + "\n");
+}
 
 std::uint64_t case_hash(const Case& definition) {
   nlohmann::json relevant = resolved_case(definition);
+  if (definition.chooses_fidelities) relevant.erase("fem"), relevant.erase("fidelities");
   // Published results and budgets change no evaluation, nor do words: a search may go on with other ones.
   for (const char* key : {"description", "references", "optimise"}) relevant.erase(key);
   erase_words(relevant);
@@ -156,8 +168,14 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
 
 PlanResult plan(const DrapeProblem& problem, OutputFolder& out, const PlanOptions& options,
                 const std::function<void(const Progress&)>& progress) {
+  EvaluationLog log = start_log(problem.definition(), out, options);
+  return plan(problem, log, options, progress);
+}
+
+PlanResult plan(const DrapeProblem& problem, EvaluationLog& log, const PlanOptions& options,
+                const std::function<void(const Progress&)>& progress) {
   const auto clock = std::chrono::steady_clock::now();
-  EvaluationLog log = start_log(problem, out, options);
+  log.use_settings(settings_hash(problem.definition()));
   PlanResult result;
   const OptimiseOptions& optimise = problem.definition().optimise;
   if (!optimise.design.empty()) {

@@ -43,19 +43,28 @@ inline const DrapeProblem& planned_problem(const DrapeProblem& given, const Plan
   return result.design ? *result.design->problem : given;
 }
 
+/// The log of a plan that starts now in a folder: a known one if it is resumed; whatever else the folder holds is set
+/// aside. Writes resolved.json.
+/// @throws WrongInput if the log that is to be resumed belongs to another case; the folder is then as it was.
+/// @throws NotFinished if a file cannot be written.
+EvaluationLog start_log(const Case& definition, OutputFolder& out, const PlanOptions& options);
+void write_resolved(const Case& definition, const OutputFolder& out);
+
 /// Searches for the best schedule of the problem; where the case has design variables, for the best rig
 /// first. With a budget of evaluations the result depends on the case only: not on threads, nor on what was
 /// resumed. Results of an earlier
 /// run in `out` are set aside, resolved.json is written, and evaluations are appended to evaluations.jsonl as
 /// they end. Memory: per evaluation its outcome, its strokes and its line of the history, a few kilobytes;
 /// whole drapes are kept of the two baselines and of the best so far only.
-/// @throws WrongInput if the log that is to be resumed belongs to another case; the folder is then as it was.
-/// @throws NotFinished if a file cannot be written.
+/// Errors as those of start_log.
 PlanResult plan(const DrapeProblem& problem, OutputFolder& out, const PlanOptions& options = {},
+                const std::function<void(const Progress&)>& progress = {});
+/// The same in a folder that has been made ready, with its log.
+PlanResult plan(const DrapeProblem& problem, EvaluationLog& log, const PlanOptions& options = {},
                 const std::function<void(const Progress&)>& progress = {});
 
 /// Hash of what an evaluation depends on: the resolved case without names, sources, other words, references
-/// and budgets.
+/// and budgets; without numerical settings where a plan chooses them, which each evaluation names itself.
 std::uint64_t case_hash(const Case& definition);
 
 }  // namespace drapeplan

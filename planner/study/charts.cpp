@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "planner/base/statistics.hpp"
-#include "planner/drape/score.hpp"
 #include "planner/report/charts.hpp"
+#include "planner/score/score.hpp"
 
 namespace drapeplan {
 namespace {

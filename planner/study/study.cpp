@@ -181,21 +181,7 @@ Case StudySubject::with(const Settings& settings) const {
 
 std::vector<Schedule> StudySubject::schedules(int count) const {
   if (!drapes()) return {Schedule{}};
-  const DrapeProblem problem(base_);
-  const SequenceFrame& frame = problem.frame();
-  const Strokes wave = wave_strokes(frame);
-  std::vector<Schedule> result{to_schedule(frame, uniform_strokes(frame)), to_schedule(frame, wave)};
-  const WaveFamily waves(frame);
-  const StrokeFamily strokes(frame, {});
-  constexpr double kReach = 0.5;  // of the box of strokes, around the baseline wave
-  const Eigen::VectorXd middle = strokes.encode(wave);
-  for (int k = 1; int(result.size()) < count; ++k) {
-    result.push_back(to_schedule(frame, waves.decode(even_point(k, WaveFamily::kDimension))));
-    const Eigen::VectorXd spread = even_point(k, strokes.dimension()).array() - 0.5;
-    result.push_back(to_schedule(frame, strokes.decode(middle + kReach * spread)));
-  }
-  result.resize(std::min(result.size(), size_t(std::max(count, 0))));
-  return result;
+  return spread_schedules(DrapeProblem(base_).frame(), count);
 }
 
 std::vector<Schedule> StudySubject::line_of_schedules(int count, double step) const {

@@ -53,8 +53,7 @@ class StudySubject {
   /// @throws std::invalid_argument with all that is wrong with them.
   [[nodiscard]] Case with(const Settings& settings) const;
 
-  /// Different schedules within the limits of the rig: the baselines first, then waves and free strokes in
-  /// turn.
+  /// See spread_schedules().
   [[nodiscard]] std::vector<Schedule> schedules(int count) const;
   /// Schedules on a short straight line through the wave family, `step` apart in its coordinates, the
   /// baseline wave in the middle.

@@ -8,7 +8,7 @@
 
 #include "fem/run/monitor.hpp"
 #include "fem/run/simulate.hpp"
-#include "planner/drape/scoring.hpp"
+#include "planner/score/scoring.hpp"
 
 namespace drapeplan {
 namespace {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "fem/mesh/foot.hpp"
-#include "planner/drape/scoring.hpp"
+#include "planner/score/scoring.hpp"
 
 namespace drapeplan {
 

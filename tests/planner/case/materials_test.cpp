@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "planner/case/file.hpp"
-#include "planner/drape/problem.hpp"
+#include "planner/drape/run_checks.hpp"
 #include "planner/search/plan.hpp"
 
 namespace drapeplan {

@@ -35,7 +35,13 @@ expect 0 simulate "$quick" --json --fidelity screen --schedule "$work/out/schedu
 same "$(value "$work/first.json" /state_hash)" "$(value "$work/stdout" /state_hash)" "schedule read from its file"
 
 # A drape that leaves what a curve is known to hold for says so, and moves as before; shipped materials are stable.
-lacks "$work/first.json" /warnings/0
+value "$work/first.json" /warnings | grep -qF 'beyond what material' && fail "a warning of what was not reached"
+# Checks of a run are named; the quick case is coarse, and its outer pads are half beyond the ply.
+for check in kinetic overhang; do
+  value "$work/first.json" /warnings | grep -qF "$check:" || fail "no warning \"$check\""
+done
+expect 3 simulate "$quick" --set score.kinetic_limit=1
+grep -qF 'thrown' "$work/stdout" "$work/stderr" || fail "a thrown ply is not marked"
 expect 0 simulate "$quick" --json --fidelity screen --set material.shear.valid_to='1 deg'
 value "$work/stdout" /warnings/0 | grep -qF 'beyond what material.shear holds for (1.0 deg)' || fail "no warning"
 grep -qF 'warning: the largest shear is' "$work/stderr" || fail "no warning on stderr"

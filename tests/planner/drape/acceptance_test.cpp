@@ -8,7 +8,7 @@
 
 #include "fem/mesh/mesh.hpp"
 #include "planner/case/file.hpp"
-#include "planner/drape/scoring.hpp"
+#include "planner/score/scoring.hpp"
 
 namespace drapeplan {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "planner/drape/scoring.hpp"
+#include "planner/score/scoring.hpp"
 
 namespace drapeplan {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "mapping/error.hpp"
 #include "planner/base/parallel.hpp"
-#include "planner/drape/scoring.hpp"
+#include "planner/score/scoring.hpp"
 #include "planner/search/batch_evaluate.hpp"
 
 namespace drapeplan {

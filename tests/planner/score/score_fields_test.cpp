@@ -1,10 +1,10 @@
-#include "planner/drape/score_fields.hpp"
+#include "planner/score/score_fields.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "planner/drape/scoring.hpp"
+#include "planner/score/scoring.hpp"
 
 namespace drapeplan {
 namespace {

@@ -12,7 +12,7 @@
 #include "fem/mesh/mesh.hpp"
 #include "mapping/mold.hpp"
 #include "planner/case/score_options.hpp"
-#include "planner/drape/score.hpp"
+#include "planner/score/score.hpp"
 
 namespace drapeplan {
 

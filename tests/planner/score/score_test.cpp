@@ -1,4 +1,4 @@
-#include "planner/drape/score.hpp"
+#include "planner/score/score.hpp"
 
 #include <gtest/gtest.h>
 

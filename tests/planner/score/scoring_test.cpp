@@ -1,4 +1,4 @@
-#include "planner/drape/scoring.hpp"
+#include "planner/score/scoring.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "planner/drape/score_fields.hpp"
+#include "planner/score/score_fields.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "mapping/polyline.hpp"
-#include "planner/drape/scoring.hpp"
+#include "planner/score/scoring.hpp"
 
 namespace drapeplan {
 namespace {
