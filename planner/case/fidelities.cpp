@@ -22,6 +22,7 @@ constexpr double kTurn = 0.25;
 /// a few percent of a gap (tests/bench/study.md).
 constexpr double kFalls = 2.5;
 constexpr double kLargestTimeScaling = 8;
+constexpr double kSearchHaste = 1.5;  ///< of the cheaper fidelities over `report`; twice would throw a light ply
 constexpr double kStandardGravity = 9.81;  // [m/s^2], where the case has none
 constexpr double kReportFibreMass = 2, kSearchFibreMass = 3;
 
@@ -75,7 +76,7 @@ std::map<std::string, FemOptions> fidelities_from_sizes(const Case& c) {
     options.fibre_mass_scaling = fibre_mass_scaling;
     return options;
   };
-  const double fast = 2 * report.time_scaling;
+  const double fast = rounded(kSearchHaste * report.time_scaling);
   return {{"screen", with(kScreenCells, fast, kSearchFibreMass)},
           {"search", with(kSearchCells, fast, kSearchFibreMass)},
           {"report", with(kReportCells, report.time_scaling, kReportFibreMass)}};

@@ -51,14 +51,17 @@ class Chooser {
   }
 
  private:
-  /// The baselines where everything is cheap; with less fibre inertia, then slower, where they fail.
+  /// The baselines where everything is cheap: slower where a ply is thrown, with less fibre inertia where a run fails.
   void begin() {
     while (!(base_ = runner_.run(base_.options, baselines_)).valid()) {
       FemOptions& options = base_.options;
-      if (options.fibre_mass_scaling > 1) {
-        options.fibre_mass_scaling = std::max(1.0, std::floor(0.5 * options.fibre_mass_scaling));
-      } else if (options.time_scaling > 1) {
+      const bool ended = std::all_of(base_.outcomes.begin(), base_.outcomes.end(), [](const Outcome& outcome) {
+        return outcome.summary.status == RunStatus::done;
+      });
+      if (options.time_scaling > 1 && (ended || options.fibre_mass_scaling <= 1)) {
         options.time_scaling = std::max(1.0, 0.5 * options.time_scaling);
+      } else if (options.fibre_mass_scaling > 1) {
+        options.fibre_mass_scaling = std::max(1.0, std::floor(0.5 * options.fibre_mass_scaling));
       } else {
         throw NotFinished("no numerical setting was found at which both baselines can be simulated: " +
                           reason_of(base_));
