@@ -19,6 +19,7 @@
 #include "planner/search/finalists.hpp"
 #include "planner/search/plan.hpp"
 #include "planner/trust/choice.hpp"
+#include "planner/trust/claim.hpp"
 
 namespace drapeplan {
 namespace {
@@ -226,7 +227,8 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
     write_resolved(problem->definition(), out);
     if (talk) std::cerr << choice_table(*choice, definition.optimise, planning.threads);
   }
-  const PlanResult result = plan(*problem, log, planning, show);
+  PlanResult result = plan(*problem, log, planning, show);
+  if (choice && !result.search.interrupted) claim_beyond(choice->chosen.back().error, result.search);
   const DrapeProblem& planned = planned_problem(*problem, result);
   print_warnings(drape_warnings(planned, result.best, result.search.best_fidelity), options.common);
   if (result.best.score.valid)

@@ -18,6 +18,7 @@
 #include "planner/report/vtu.hpp"
 #include "planner/schedule/check.hpp"
 #include "planner/schedule/file.hpp"
+#include "planner/trust/setting_runs.hpp"
 #include "planner/views/files.hpp"
 #include "planner/views/history.hpp"
 
@@ -117,8 +118,12 @@ std::string summary_text(const RunSummary& summary, int nodes) {
              1e2 * summary.largest_hourglass_share, summary.energy.balance_error, hex(summary.state_hash));
 }
 
-void print_terms(const Model& model, const CommonOptions& options) {
-  if (!options.quiet) std::cerr << "terms: " << terms_line(model) << '\n';
+void print_terms(const Model& model, const Case& definition, const CommonOptions& options) {
+  if (options.quiet) return;
+  std::cerr << "terms: " << terms_line(model) << '\n';
+  if (definition.chooses_fidelities)
+    std::cerr << "settings: " << setting_text(model.scene().options)
+              << ": from the sizes of the rig; what they are worth is measured by `plan` alone\n";
 }
 
 /// What probes and grips ended with, where the case has any.
@@ -134,7 +139,7 @@ int simulate_free(const Case& definition, const SimulateOptions& options) {
   OutputFolder out = take_folder(options.common, "simulate");
   try_save(options);
   begin_output(out, options.common);
-  print_terms(model, options.common);
+  print_terms(model, definition, options.common);
   const bool files = !options.common.out.empty();
   std::vector<Snapshot> frames;
   Recorder recorder(definition, model, nullptr);
@@ -234,7 +239,7 @@ int simulate_drape(Case definition, const SimulateOptions& options) {
   OutputFolder out = take_folder(options.common, "simulate");
   try_save(options);
   begin_output(out, options.common);
-  print_terms(model, options.common);
+  print_terms(model, problem.definition(), options.common);
   Recorder recorder(problem.definition(), model, &schedule);
   RunPart run_part{.from = part.from ? &*part.from : nullptr, .pause = part.pause};
   run_part.samples = files ? kHistoryInstants : 0;

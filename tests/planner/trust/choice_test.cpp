@@ -12,6 +12,7 @@
 
 #include "planner/case/file.hpp"
 #include "planner/search/plan.hpp"
+#include "planner/trust/claim.hpp"
 
 namespace drapeplan {
 namespace {
@@ -123,6 +124,33 @@ TEST(Choice, PlansGoOnWithIt) {
   plan(DrapeProblem(bare), log, {.threads = 1});
   EXPECT_EQ(log.size(), 2 * evaluations) << "the same names with other settings are other evaluations";
   fs::remove_all(run);
+}
+
+StagedResult searched(double uniform, double wave, double best) {
+  StagedResult search;
+  for (const auto& [candidate, objective] :
+       {std::pair(&search.uniform, uniform), {&search.wave, wave}, {&search.best, best}}) {
+    candidate->outcome.score.objective = objective;
+    candidate->outcome.score.valid = true;
+  }
+  search.best.name = "gripper 7";
+  search.beats_baselines = true;
+  search.message = "better";
+  return search;
+}
+
+TEST(Claim, StandsOnlyBeyondTheError) {
+  StagedResult far = searched(30, 28, 21);
+  claim_beyond(0.05, far);
+  EXPECT_TRUE(far.beats_baselines);
+  EXPECT_EQ(far.message, "better; figures may be off by 5.0 %");
+  StagedResult near = searched(30, 28, 27);
+  claim_beyond(0.05, near);
+  EXPECT_FALSE(near.beats_baselines);
+  EXPECT_NE(near.message.find("no better than the baselines within the error of 5.0 %"), std::string::npos);
+  StagedResult unfollowed = searched(30, 28, 29);  // wins, since the rig does not follow the baselines
+  claim_beyond(0.05, unfollowed);
+  EXPECT_TRUE(unfollowed.beats_baselines);
 }
 
 }  // namespace
