@@ -17,8 +17,8 @@
 #include "planner/drape/run_checks.hpp"
 #include "planner/report/run_files.hpp"
 #include "planner/search/finalists.hpp"
+#include "planner/search/interrupted.hpp"
 #include "planner/search/plan.hpp"
-#include "planner/trust/choice.hpp"
 #include "planner/trust/claim.hpp"
 
 namespace drapeplan {
@@ -182,11 +182,12 @@ void print_start(const DrapeProblem& problem) {
                            front_table(problem.ply_floor().front), problem.ply_floor().meaning);
 }
 
-std::string result_text(const DrapeProblem& problem, const PlanResult& result,
+std::string result_text(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,
                         const std::filesystem::path& folder) {
   std::string text = fmt::format("\n{}\n\n{}\n{}\n", verdict_text(problem, result),
                                  comparison_table(problem, result), result.search.message);
   if (const std::string force = best_force_text(problem, result); !force.empty()) text += force + "\n";
+  if (trust.spread) text += spread_text(*trust.spread) + "\n";
   text += fmt::format("{} evaluations ({} failed) in {} s", result.search.evaluations,
                       result.search.failed_evaluations, std::llround(result.wall_seconds));
   if (result.best.score.valid) text += fmt::format("; report: {}", (folder / "report.html").string());
@@ -199,6 +200,24 @@ void build_models(const DrapeProblem& problem) {
   std::vector<std::string> fidelities = plan_ladder(problem.definition());
   fidelities.emplace_back(kReport);
   for (const std::string& fidelity : fidelities) static_cast<void>(problem.model(fidelity));
+}
+
+/// Share of a budget of time that the runs in disturbed plants may take.
+constexpr double kSpreadShare = 0.05;
+
+/// The best schedule and the better baseline in plants that differ; nothing if that is interrupted.
+std::optional<Spread> spread_in_plants(const DrapeProblem& problem, const StagedResult& search, EvaluationLog& log,
+                                       const PlanOptions& planning) {
+  const OptimiseOptions& optimise = problem.definition().optimise;
+  const double seconds = optimise.evaluations > 0 ? 0 : kSpreadShare * optimise.budget;
+  const Candidate& baseline =
+      value_of(search.wave.outcome) < value_of(search.uniform.outcome) ? search.wave : search.uniform;
+  try {
+    return spread_of(problem, search.best.schedule, baseline.schedule, plan_ladder(problem.definition()), seconds, log,
+                     planning.threads, planning.stop);
+  } catch (const Interrupted&) {
+    return {};
+  }
 }
 
 /// Plans one case into its folder; throws what went wrong.
@@ -216,28 +235,36 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
   const PlanOptions planning{
       .resume = options.resume,
       .threads = options.common.threads,
+      .kept = kSpreadShare,
       .stop = [] { return InterruptGuard::interrupted(); },
       .moved = [&](const std::filesystem::path& earlier) { print_set_aside(earlier, options.common); }};
   EvaluationLog log = start_log(problem->definition(), out, planning);
-  std::optional<FidelityChoice> choice;
+  PlanTrust trust;
   if (definition.chooses_fidelities) {
-    choice = choose_fidelities(definition, log, planning.threads, planning.stop, show);
-    definition.fidelities = choice->fidelities();
+    trust.choice = choose_fidelities(definition, log, planning.threads, planning.stop, show);
+    definition.fidelities = trust.choice->fidelities();
     problem = std::make_unique<const DrapeProblem>(definition);
     write_resolved(problem->definition(), out);
-    if (talk) std::cerr << choice_table(*choice, definition.optimise, planning.threads);
+    if (talk) std::cerr << choice_table(*trust.choice, definition.optimise, planning.threads);
   }
   PlanResult result = plan(*problem, log, planning, show);
-  if (choice && !result.search.interrupted) claim_beyond(choice->chosen.back().error, result.search);
+  if (trust.choice && !result.search.interrupted)
+    claim_beyond(trust.choice->chosen.back().error, result.search);
   const DrapeProblem& planned = planned_problem(*problem, result);
+  if (result.best.score.valid && !result.search.interrupted) {
+    show({.stage = "spread", .done = log.size(), .best = result.best.score.objective,
+          .seconds_left = std::numeric_limits<double>::quiet_NaN()});
+    trust.spread = spread_in_plants(planned, result.search, log, planning);
+  }
   print_warnings(drape_warnings(planned, result.best, result.search.best_fidelity), options.common);
   if (result.best.score.valid)
-    write_plan(out.path(), planned, result, choice ? &*choice : nullptr);  // no schedule for a robot from failed runs
+    write_plan(out.path(), planned, result, trust);  // no schedule for a robot from failed runs
   json document = plan_json(planned, result);
-  if (choice) document["numerics"] = choice_json(*choice);
+  if (trust.choice) document["numerics"] = choice_json(*trust.choice);
+  if (trust.spread) document["robust"] = spread_json(*trust.spread);
   write_text(out.path() / "result.json", document_text(document));
   return {.result = std::move(document),
-          .text = result_text(planned, result, out.path()),
+          .text = result_text(planned, result, trust, out.path()),
           .valid = result.best.score.valid,
           .interrupted = result.search.interrupted};
 }

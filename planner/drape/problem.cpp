@@ -250,7 +250,10 @@ std::vector<float> DrapeProblem::score_fields_of(const Drape& drape, const std::
 
 Drape DrapeProblem::run(const Schedule& schedule, const std::string& fidelity, int frames,
                         RunPart part) const {
-  const Model& model = this->model(fidelity);
+  return run_on(model(fidelity), schedule, frames, std::move(part));
+}
+
+Drape DrapeProblem::run_on(const Model& model, const Schedule& schedule, int frames, RunPart part) const {
   Drape drape;
   RunRequest request;
   request.schedule = &schedule;

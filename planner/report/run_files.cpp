@@ -257,8 +257,31 @@ ReportTable choice_report(const FidelityChoice& choice) {
   return table;
 }
 
+/// Both schedules in plants that differ from the case.
+ReportTable spread_report(const Spread& spread) {
+  std::string text = spread_text(spread) + ".";
+  text.front() = char(std::toupper(static_cast<unsigned char>(text.front())));
+  ReportTable table{.title = "In a plant that differs",
+                    .caption = text,
+                    .head = {"differs by", "largest gap [mm]", "largest boundary offset [mm]", "objective",
+                             "objective of the baseline"},
+                    .rows = {}};
+  for (const DisturbedPair& pair : spread.pairs) {
+    const Score& best = pair.best;
+    const auto text_of = [](const Score& score, double value, int decimals) {
+      return score.valid ? fixed(value, decimals) : std::string("failed");
+    };
+    table.rows.push_back({.cells = {pair.disturbance.empty() ? "nothing" : pair.disturbance,
+                                    text_of(best, 1e3 * best.max_gap, 2), text_of(best, 1e3 * best.max_boundary_offset, 2),
+                                    text_of(best, best.objective, 2),
+                                    text_of(pair.baseline, pair.baseline.objective, 2)},
+                          .failed = !pair.best.valid});
+  }
+  return table;
+}
+
 /// The page of a plan. @param drape, sequence  pictures, as SVG.
-PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const FidelityChoice* choice,
+PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,
                    const std::string& drape, const std::string& sequence) {
   const RigOptions& rig = *problem.definition().grippers;
   const StagedResult& search = result.search;
@@ -272,9 +295,10 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   if (const std::string force = best_force_text(problem, result); !force.empty()) report.reach += " " + force;
   report.rows = rows_of(problem, result);
   report.notes = notes_of(problem, result.best, search.best_fidelity);
-  if (choice) {
-    report.tables.push_back(choice_report(*choice));
-    if (!choice->message.empty()) report.notes.push_back(choice->message);
+  if (trust.spread) report.tables.push_back(spread_report(*trust.spread));
+  if (trust.choice) {
+    report.tables.push_back(choice_report(*trust.choice));
+    if (!trust.choice->message.empty()) report.notes.push_back(trust.choice->message);
   }
   report.figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", drape},
                     {"Who goes down when", sequence},
@@ -312,7 +336,7 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
 }  // namespace
 
 void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result,
-                const FidelityChoice* choice) {
+                const PlanTrust& trust) {
   const RigOptions& rig = *problem.definition().grippers;
   const StagedResult& search = result.search;
   write_schedule(folder / "schedule.json", search.best.schedule, rig);
@@ -337,7 +361,7 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
   write_text(folder / "sequence.svg", sequence);
   if (result.design)
     write_text(folder / kDesignFile, dump_json(resolved_case(problem.definition()), 2) + "\n");
-  write_text(folder / "report.html", html_report(page_of(problem, result, choice, drape, sequence)));
+  write_text(folder / "report.html", html_report(page_of(problem, result, trust, drape, sequence)));
 }
 
 std::string comparison_table(const DrapeProblem& problem, const PlanResult& result) {

@@ -8,7 +8,7 @@
 #include "planner/report/page.hpp"
 #include "planner/report/picture.hpp"
 #include "planner/search/plan.hpp"
-#include "planner/trust/choice.hpp"
+#include "planner/trust/claim.hpp"
 
 namespace drapeplan {
 
@@ -38,9 +38,8 @@ inline constexpr const char* kDesignFile = "design.json";
 
 /// Writes all files of a plan but result.json and resolved.json: schedule.json and .csv of the best,
 /// schedules of the baselines, contour picture, charts, VTU and PVD, report.html.
-/// @param choice  of the numerical settings, where the plan made it; else null.
 void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result,
-                const FidelityChoice* choice = nullptr);
+                const PlanTrust& trust = {});
 
 /// Whether the best drape is good enough, by the tolerances of its case; if not, whether another schedule could be.
 std::string verdict_text(const DrapeProblem& problem, const PlanResult& result);

@@ -142,6 +142,7 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
   };
   StagedOptions staged;
   staged.optimise = problem.definition().optimise;
+  staged.optimise.budget *= 1 - options.kept;
   staged.threads = options.threads;
   if (result.design) staged.wave = result.design->wave;
   staged.ladder = plan_ladder(problem.definition());

@@ -1,0 +1,181 @@
+#include "planner/trust/spread.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "fem/core/hash.hpp"
+#include "planner/base/parallel.hpp"
+#include "planner/drape/result_fields.hpp"
+#include "planner/search/batch_evaluate.hpp"
+#include "planner/search/interrupted.hpp"
+
+namespace drapeplan {
+namespace {
+
+void scale(StressTable& table, double factor) {
+  for (Curve& curve : table.curves) {
+    for (double& stress : curve.stress) stress *= factor;
+  }
+}
+
+/// All times of the schedule.
+void stretch(Schedule& schedule, double factor) {
+  for (std::vector<Knot>& path : schedule.paths) {
+    for (Knot& knot : path) knot.time *= factor;
+  }
+  for (std::vector<PlaneKnot>& path : schedule.plane_paths) {
+    for (PlaneKnot& knot : path) knot.time *= factor;
+  }
+  for (std::optional<double>& time : schedule.release) {
+    if (time) *time *= factor;
+  }
+}
+
+Outcome drape(const DrapeProblem& problem, const Disturbance& disturbance, Schedule schedule,
+              const std::string& fidelity) {
+  Case plant = problem.definition();  // with the lengths that its interlinks have
+  disturbance.apply(plant, schedule);
+  const Model model = model_of(plant, plant.fidelities.at(fidelity));
+  return outcome_of(problem.run_on(model, schedule));
+}
+
+/// Smallest, mean and largest value of a part of the score over all plants in which the drape ran to its end.
+nlohmann::json range_of(const Spread& spread, Score DisturbedPair::*schedule, double Score::*part) {
+  double least = std::numeric_limits<double>::infinity(), most = -least, sum = 0;
+  int count = 0;
+  for (const DisturbedPair& pair : spread.pairs) {
+    if (!(pair.*schedule).valid) continue;
+    const double value = pair.*schedule.*part;
+    least = std::min(least, value);
+    most = std::max(most, value);
+    sum += value;
+    ++count;
+  }
+  return {{"least", finite(least)}, {"mean", finite(sum / count)}, {"worst", finite(most)}};
+}
+
+}  // namespace
+
+std::vector<Disturbance> disturbances(const Case& definition) {
+  std::vector<Disturbance> list{{"", [](Case&, Schedule&) {}}};
+  for (const double sign : {1.0, -1.0}) {
+    const char* mark = sign > 0 ? "+" : "-";
+    const auto add = [&](const std::string& name, std::function<void(Case&, Schedule&)> apply) {
+      list.push_back({name, std::move(apply)});
+    };
+    if (definition.friction) {
+      add(fmt::format("friction {} {:.0f} %", mark, 1e2 * kFrictionSpread),
+          [sign](Case& plant, Schedule&) { *plant.friction *= 1 + sign * kFrictionSpread; });
+    }
+    for (const int axis : {0, 1}) {
+      add(fmt::format("rig {} {:.0f} mm in {}", mark, 1e3 * kPlacementSpread, axis == 0 ? "x" : "y"),
+          [sign, axis](Case& plant, Schedule&) { plant.ply.position[axis] += sign * kPlacementSpread; });
+    }
+    add(fmt::format("rig turned by {} {:.0f} deg", mark, kAngleSpreadDeg), [sign](Case& plant, Schedule&) {
+      plant.ply.angle += sign * kAngleSpreadDeg * std::numbers::pi / 180;
+    });
+    add(fmt::format("shear stress {} {:.0f} %", mark, 1e2 * kShearSpread),
+        [sign](Case& plant, Schedule&) { scale(plant.material.shear, 1 + sign * kShearSpread); });
+    add(fmt::format("joints {} {:.1f} mm", mark, 1e3 * kJointSpread), [sign](Case& plant, Schedule&) {
+      plant.grippers->joint_offset = std::max(0.0, plant.grippers->joint_offset + sign * kJointSpread);
+    });
+    add(fmt::format("times {} {:.0f} %", mark, 1e2 * kTimingSpread),
+        [sign](Case&, Schedule& schedule) { stretch(schedule, 1 + sign * kTimingSpread); });
+  }
+  return list;
+}
+
+int Spread::better() const {
+  return int(std::count_if(pairs.begin() + 1, pairs.end(), [](const DisturbedPair& pair) { return pair.better(); }));
+}
+
+Spread spread_of(const DrapeProblem& problem, const Schedule& best, const Schedule& baseline,
+                 const std::vector<std::string>& fidelities, double seconds, EvaluationLog& log, int threads,
+                 const std::function<bool()>& stop) {
+  const std::vector<Disturbance> list = disturbances(problem.definition());
+  const int runs = 2 * int(list.size());
+  // Both schedules in each plant, one after the other: the undisturbed pair tells what all will take.
+  const auto evaluate = [&](const std::string& fidelity, int from, int to) {
+    std::vector<Outcome> outcomes(static_cast<size_t>(to - from));
+    std::vector<std::uint64_t> keys(outcomes.size());
+    const auto one = [&](int k) {
+      if (stop && stop()) throw Interrupted();
+      const Disturbance& disturbance = list[size_t((from + k) / 2)];
+      const Schedule& schedule = (from + k) % 2 == 0 ? best : baseline;
+      Fnv1a hash;
+      hash.add(std::string_view("disturbed: " + disturbance.name));
+      keys[size_t(k)] = candidate_hash(hash.value(), schedule);
+      outcomes[size_t(k)] = log.evaluate_once(keys[size_t(k)], fidelity, [&] {
+        return scored([&] { return drape(problem, disturbance, schedule, fidelity); });
+      });
+    };
+    parallel_for(to - from, one, threads);
+    for (size_t k = 0; k < outcomes.size(); ++k) {
+      if (!outcomes[k].cached) log.write(keys[k], fidelity, "spread", outcomes[k]);
+    }
+    return outcomes;
+  };
+  Spread spread;
+  std::vector<Outcome> outcomes;
+  for (auto name = fidelities.rbegin(); name != fidelities.rend(); ++name) {
+    spread.fidelity = *name;
+    outcomes = evaluate(*name, 0, 2);
+    const double each = 0.5 * (outcomes[0].wall_seconds + outcomes[1].wall_seconds);
+    if (seconds <= 0 || runs * each <= seconds * thread_count(threads)) break;
+  }
+  const std::vector<Outcome> others = evaluate(spread.fidelity, 2, runs);
+  outcomes.insert(outcomes.end(), others.begin(), others.end());
+  for (size_t k = 0; k < list.size(); ++k)
+    spread.pairs.push_back({list[k].name, outcomes[2 * k].score, outcomes[2 * k + 1].score});
+  return spread;
+}
+
+std::string spread_text(const Spread& spread) {
+  const bool is_baseline = std::all_of(spread.pairs.begin(), spread.pairs.end(), [](const DisturbedPair& pair) {
+    return pair.best.objective == pair.baseline.objective;
+  });
+  std::string worst;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const DisturbedPair& pair : spread.pairs) {
+    if (!pair.best.valid) return fmt::format("with {} the optimised sequence fails: {}", pair.disturbance,
+                                             pair.best.reason);
+    least = std::min(least, pair.best.objective);
+    if (pair.best.objective > most) most = pair.best.objective, worst = pair.disturbance;
+  }
+  std::string text = fmt::format(
+      "in {} plants that differ (friction, placement, shear, joints, times; at `{}`) its objective is {:.2f} to {:.2f}, "
+      "worst with {}",
+      spread.plants(), spread.fidelity, least, most, worst.empty() ? "none of these" : worst);
+  if (!is_baseline)
+    text += fmt::format("; it stays better than the better baseline in {} of them", spread.better());
+  return text;
+}
+
+nlohmann::json spread_json(const Spread& spread) {
+  nlohmann::json plants = nlohmann::json::array();
+  for (const DisturbedPair& pair : spread.pairs) {
+    plants.push_back({{"disturbance", pair.disturbance.empty() ? "none" : pair.disturbance},
+                      {"best", score_json(pair.best)},
+                      {"baseline", score_json(pair.baseline)}});
+  }
+  nlohmann::json best, baseline;
+  for (const ScorePart& part : kScoreParts) {
+    if (!part.compared) continue;
+    best[part.key] = range_of(spread, &DisturbedPair::best, part.value);
+    baseline[part.key] = range_of(spread, &DisturbedPair::baseline, part.value);
+  }
+  return {{"fidelity", spread.fidelity},
+          {"rule", "the best is the candidate with the lowest objective in the undisturbed plant"},
+          {"best", std::move(best)},
+          {"baseline", std::move(baseline)},
+          {"better_in", spread.better()},
+          {"plants", spread.plants()},
+          {"disturbed", std::move(plants)}};
+}
+
+}  // namespace drapeplan

@@ -1,0 +1,75 @@
+// Plants that differ from the case: what is changed, and that both schedules meet the same plants.
+#include "planner/trust/spread.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "planner/case/file.hpp"
+
+namespace drapeplan {
+namespace {
+
+Case coarse_case(std::vector<std::string> overrides = {}) {
+  for (const char* change : {"fem.mesh_size=40 mm", "fem.time_scaling=30", "fidelities={}"})
+    overrides.emplace_back(change);
+  return read_case(DRAPEPLAN_SOURCE_DIR "/cases/flexdraper-quick.json", overrides).definition;
+}
+
+TEST(Disturbances, ChangeOneThingEachUpAndDown) {
+  const Case nominal = coarse_case();
+  const std::vector<Disturbance> list = disturbances(nominal);
+  ASSERT_EQ(list.size(), 15u);
+  EXPECT_EQ(list[0].name, "");
+  const auto disturbed = [&](const std::string& name) {
+    Case plant = nominal;
+    Schedule schedule{.paths = {{{0, 0.1}, {2, 0}}}, .release = {3.0}};
+    for (const Disturbance& disturbance : list) {
+      if (disturbance.name == name) disturbance.apply(plant, schedule);
+    }
+    return std::pair(plant, schedule);
+  };
+  EXPECT_NEAR(*disturbed("friction - 20 %").first.friction, 0.8 * *nominal.friction, 1e-12);
+  EXPECT_NEAR(disturbed("rig + 2 mm in y").first.ply.position.y(), nominal.ply.position.y() + 0.002, 1e-12);
+  EXPECT_NEAR(disturbed("rig turned by - 1 deg").first.ply.angle, nominal.ply.angle - 0.0174533, 1e-6);
+  EXPECT_NEAR(disturbed("shear stress + 50 %").first.material.shear.slowest().stress.back(),
+              1.5 * nominal.material.shear.slowest().stress.back(), 1e-6);
+  EXPECT_NEAR(disturbed("joints - 0.5 mm").first.grippers->joint_offset, 0.0005, 1e-12);
+  const Schedule late = disturbed("times + 5 %").second;
+  EXPECT_NEAR(late.paths[0][1].time, 2.1, 1e-12);
+  EXPECT_NEAR(*late.release[0], 3.15, 1e-12);
+}
+
+TEST(Spread, IsTheSameForAnyNumberOfThreadsAndFromTheLog) {
+  const DrapeProblem problem(coarse_case());
+  const Schedule uniform = to_schedule(problem.frame(), uniform_strokes(problem.frame()));
+  const Schedule wave = to_schedule(problem.frame(), wave_strokes(problem.frame()));
+  EvaluationLog log, other;
+  const Spread spread = spread_of(problem, wave, uniform, {kReport}, 0, log, 1, {});
+  ASSERT_EQ(spread.pairs.size(), 15u);
+  EXPECT_EQ(spread.fidelity, kReport);
+  EXPECT_EQ(spread.pairs[0].best.objective, problem.run(wave, kReport).score.objective);
+  EXPECT_EQ(spread.pairs[0].baseline.objective, problem.run(uniform, kReport).score.objective);
+  EXPECT_NE(spread.pairs[1].best.objective, spread.pairs[0].best.objective);
+  EXPECT_EQ(spread_json(spread), spread_json(spread_of(problem, wave, uniform, {kReport}, 0, other, 2, {})));
+  EXPECT_EQ(log.size(), 30);
+  spread_of(problem, wave, uniform, {kReport}, 0, log, 1, {});
+  EXPECT_EQ(log.size(), 30) << "all was served from the log";
+}
+
+TEST(Spread, SaysHowOftenTheBestStaysBetterAndWhatFails) {
+  Score good, bad, failed;
+  good.valid = bad.valid = true;
+  good.objective = 1;
+  bad.objective = 2;
+  failed.reason = "it diverged";
+  Spread spread{.fidelity = "search", .pairs = {{"", good, bad}, {"a", bad, good}, {"b", good, failed}}};
+  EXPECT_EQ(spread.better(), 1);
+  EXPECT_NE(spread_text(spread).find("in 1 of them"), std::string::npos) << spread_text(spread);
+  EXPECT_NE(spread_text(spread).find("worst with a"), std::string::npos);
+  spread.pairs.push_back({"c", failed, good});
+  EXPECT_EQ(spread_text(spread), "with c the optimised sequence fails: it diverged");
+}
+
+}  // namespace
+}  // namespace drapeplan
