@@ -18,6 +18,8 @@ constexpr double kCellsPerSpacing = 8;
 /// A cell turns at most by this much over the mold, for one cell along the radius [rad].
 constexpr double kTurn = 0.25;
 
+constexpr double kLeastCell = 1e-4, kLargestCell = 1;  // [m], as `fem.mesh_size` allows
+
 /// A stroke takes at least so many times what the ply needs to fall through its height: then what inertia changes is
 /// a few percent of a gap (tests/bench/study.md).
 constexpr double kFalls = 2.5;
@@ -71,7 +73,7 @@ std::map<std::string, FemOptions> fidelities_from_sizes(const Case& c) {
       fall > 0 ? rounded(std::clamp(stroke / (kFalls * fall), 1.0, kLargestTimeScaling)) : 1;
   const auto with = [&](int cells, double time_scaling, double fibre_mass_scaling) {
     FemOptions options = report;
-    options.mesh_size = rounded(kCellSlack * coarsest / cells);
+    options.mesh_size = std::clamp(rounded(kCellSlack * coarsest / cells), kLeastCell, kLargestCell);
     options.time_scaling = time_scaling;
     options.fibre_mass_scaling = fibre_mass_scaling;
     return options;

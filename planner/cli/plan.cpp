@@ -188,6 +188,8 @@ std::string result_text(const DrapeProblem& problem, const PlanResult& result, c
                                  comparison_table(problem, result), result.search.message);
   if (const std::string force = best_force_text(problem, result); !force.empty()) text += force + "\n";
   if (trust.spread) text += spread_text(*trust.spread) + "\n";
+  if (!trust.spread && !result.search.interrupted && result.best.score.valid)
+    text += "plants that differ were not simulated: the time, or an interruption, left none for it (--resume goes on)\n";
   text += fmt::format("{} evaluations ({} failed) in {} s", result.search.evaluations,
                       result.search.failed_evaluations, std::llround(result.wall_seconds));
   if (result.best.score.valid) text += fmt::format("; report: {}", (folder / "report.html").string());
@@ -205,26 +207,24 @@ void build_models(const DrapeProblem& problem) {
 /// Share of a budget of time that the runs in disturbed plants may take.
 constexpr double kSpreadShare = 0.05;
 
-/// The best schedule and the better baseline in plants that differ; nothing if that is interrupted.
-std::optional<Spread> spread_in_plants(const DrapeProblem& problem, const StagedResult& search, EvaluationLog& log,
-                                       const PlanOptions& planning) {
+/// The best schedule and the better baseline in plants that differ; nothing where there is no time for it.
+std::optional<PlantSpread> spread_in_plants(const DrapeProblem& problem, const PlanResult& result, EvaluationLog& log,
+                                            const PlanOptions& planning) {
   const OptimiseOptions& optimise = problem.definition().optimise;
-  const double seconds = optimise.evaluations > 0 ? 0 : kSpreadShare * optimise.budget;
-  const Candidate& baseline =
-      value_of(search.wave.outcome) < value_of(search.uniform.outcome) ? search.wave : search.uniform;
-  try {
-    return spread_of(problem, search.best.schedule, baseline.schedule, plan_ladder(problem.definition()), seconds, log,
-                     planning.threads, planning.stop);
-  } catch (const Interrupted&) {
-    return {};
-  }
+  const SpreadOptions options{.fidelities = plan_ladder(problem.definition()),
+                              .seconds = optimise.evaluations > 0 ? 0 : kSpreadShare * optimise.budget,
+                              .design = result.design ? design_hash(result.design->overrides) : 0,
+                              .threads = planning.threads,
+                              .stop = planning.stop};
+  return spread_of(problem, result.search.best.schedule, better_baseline(result.search).schedule, options, log);
 }
 
 /// Plans one case into its folder; throws what went wrong.
 PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFolder& out) {
+  const auto clock = std::chrono::steady_clock::now();
   const bool talk = !options.common.quiet;
   auto problem = std::make_unique<const DrapeProblem>(definition);
-  build_models(*problem);
+  if (!definition.chooses_fidelities) build_models(*problem);
   if (talk) print_start(*problem);
   print_warnings(map_warnings(problem->definition(), problem->mapping()), options.common);
   ProgressLine line;
@@ -249,24 +249,33 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
   }
   PlanResult result = plan(*problem, log, planning, show);
   if (trust.choice && !result.search.interrupted)
-    claim_beyond(trust.choice->chosen.back().error, result.search);
+    claim_beyond(trust.choice->chosen.back().objective_error, result.search);
   const DrapeProblem& planned = planned_problem(*problem, result);
-  if (result.best.score.valid && !result.search.interrupted) {
-    show({.stage = "spread", .done = log.size(), .best = result.best.score.objective,
+  bool interrupted = result.search.interrupted;
+  if (result.best.score.valid && !interrupted) {
+    show({.stage = "spread",
+          .done = log.size(),
+          .best = result.best.score.objective,
           .seconds_left = std::numeric_limits<double>::quiet_NaN()});
-    trust.spread = spread_in_plants(planned, result.search, log, planning);
+    try {
+      trust.spread = spread_in_plants(planned, result, log, planning);
+    } catch (const Interrupted&) {
+      interrupted = true;
+    }
   }
+  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   print_warnings(drape_warnings(planned, result.best, result.search.best_fidelity), options.common);
   if (result.best.score.valid)
     write_plan(out.path(), planned, result, trust);  // no schedule for a robot from failed runs
   json document = plan_json(planned, result);
+  document["interrupted"] = interrupted;
   if (trust.choice) document["numerics"] = choice_json(*trust.choice);
   if (trust.spread) document["robust"] = spread_json(*trust.spread);
   write_text(out.path() / "result.json", document_text(document));
   return {.result = std::move(document),
           .text = result_text(planned, result, trust, out.path()),
           .valid = result.best.score.valid,
-          .interrupted = result.search.interrupted};
+          .interrupted = interrupted};
 }
 
 /// A run directory per case: --out itself for a single case, else a folder below it by the case file's name.

@@ -285,8 +285,8 @@ Drape DrapeProblem::run_for_objective(const Schedule& schedule, const std::strin
 Score DrapeProblem::score_at(const Model& model, const RunResult& run, const Snapshot& ply,
                              const RunRecord& seen, double duration) const {
   if (run.summary.status != RunStatus::done) return failed_score(run.summary.message);
-  if (run.summary.largest_kinetic_ratio > case_.score.kinetic_limit)
-    return failed_score(thrown_text(run.summary.largest_kinetic_ratio, case_.score.kinetic_limit));
+  if (seen.kinetic_ratio > case_.score.kinetic_limit && fabric_takes_part(run.summary))
+    return failed_score(thrown_text(seen.kinetic_ratio, case_.score.kinetic_limit));
   // A gap is never negative: a ply that ended inside the mold would look perfectly draped.
   if (run.summary.largest_penetration > case_.material.thickness)
     return failed_score(fmt::format("the ply came {:f} mm inside the mold: more than its thickness",

@@ -53,6 +53,10 @@ std::string thrown_text(double ratio, double limit) {
                      ratio, limit);
 }
 
+bool fabric_takes_part(const RunSummary& run) {
+  return run.energy.internal > kFabricShare * run.energy.external;
+}
+
 std::vector<RunWarning> run_warnings(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity) {
   const Case& c = problem.definition();
   const RunSummary& run = drape.run.summary;
@@ -60,7 +64,7 @@ std::vector<RunWarning> run_warnings(const DrapeProblem& problem, const Drape& d
   const auto above = [&list](const char* check, double value, double limit, std::string text) {
     if (value > limit) list.push_back({check, value, limit, std::move(text)});
   };
-  above("kinetic", run.largest_kinetic_ratio, kKineticLimit,
+  above("kinetic", fabric_takes_part(run) ? run.largest_kinetic_ratio : 0, kKineticLimit,
         fmt::format("kinetic: the ply's kinetic energy came to {:.2g} times its internal energy (limit {:g}): inertia may "
                     "have moved it; a smaller fem.time_scaling or fem.mass_scaling shows whether",
                     run.largest_kinetic_ratio, kKineticLimit));

@@ -32,6 +32,11 @@ std::vector<RunWarning> run_warnings(const DrapeProblem& problem, const Drape& d
 /// All that a drape is to be warned of: the texts of both.
 std::vector<std::string> drape_warnings(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity);
 
+/// The share of the work of gravity and actuators below which the ratio of kinetic to internal energy says nothing: a
+/// ply that sinks onto a plane or a gently curved mold is hardly deformed, and its internal energy is next to none.
+inline constexpr double kFabricShare = 0.1;
+bool fabric_takes_part(const RunSummary& run);
+
 /// Why a drape with this ratio of kinetic to internal energy has no score.
 std::string thrown_text(double ratio, double limit);
 

@@ -258,7 +258,7 @@ ReportTable choice_report(const FidelityChoice& choice) {
 }
 
 /// Both schedules in plants that differ from the case.
-ReportTable spread_report(const Spread& spread) {
+ReportTable spread_report(const PlantSpread& spread) {
   std::string text = spread_text(spread) + ".";
   text.front() = char(std::toupper(static_cast<unsigned char>(text.front())));
   ReportTable table{.title = "In a plant that differs",

@@ -56,16 +56,18 @@ std::vector<Trial> pick_finalists(const SequenceFrame& frame,
   return finalists;
 }
 
+const Candidate& better_baseline(const StagedResult& result) {
+  return outcome_ranks_before(result.wave.outcome, result.uniform.outcome) ? result.wave : result.uniform;
+}
+
 void conclude(StagedResult& result) {
   std::stable_sort(result.finalists.begin(), result.finalists.end(),
                    [](const Candidate& a, const Candidate& b) { return outcome_ranks_before(a.outcome, b.outcome); });
   result.best = result.finalists.front();
   result.best_fidelity = kReport;
-  const Outcome& better_baseline = outcome_ranks_before(result.wave.outcome, result.uniform.outcome)
-                                       ? result.wave.outcome
-                                       : result.uniform.outcome;
-  const double baseline = value_of(better_baseline), best = value_of(result.best.outcome);
-  result.beats_baselines = outcome_ranks_before(result.best.outcome, better_baseline);
+  const Outcome& to_beat = better_baseline(result).outcome;
+  const double baseline = value_of(to_beat), best = value_of(result.best.outcome);
+  result.beats_baselines = outcome_ranks_before(result.best.outcome, to_beat);
   const std::string& name = result.best.name;
   if (!std::isfinite(best)) {
     result.message = fmt::format("no schedule could be evaluated at fidelity \"{}\"", kReport);

@@ -37,6 +37,9 @@ std::vector<Trial> pick_finalists(const SequenceFrame& frame,
                                   const std::vector<const std::vector<Trial>*>& lists,
                                   std::vector<Schedule> known, int count);
 
+/// The baseline that is to be beaten: the one that ranks before the other.
+const Candidate& better_baseline(const StagedResult& result);
+
 /// Sorts the finalists, best first: failures last, before them what the rig did not follow. The first is the
 /// best; the message says by how much it beats the baselines, or that it does not.
 void conclude(StagedResult& result);

@@ -16,10 +16,15 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Error of a knob that could not be turned [-].
+constexpr double kUnknownError = 1;
+/// Reports that a search makes at a time (search/stages.cpp).
+constexpr int kReportsSideBySide = 2;
+
 /// A combination of levels, one of each knob.
 struct Combination {
   FemOptions options;
-  double error = kInfinity;
+  double error = kInfinity, objective_error = kInfinity;
   double updates = 0;  ///< of the elements in a run: its cost, whatever the machine does meanwhile
   double seconds = 0;  ///< of a run on one core [s]
 };
@@ -51,14 +56,19 @@ class Chooser {
   }
 
  private:
-  /// The baselines where everything is cheap: slower where a ply is thrown, with less fibre inertia where a run fails.
+  /// The baselines where everything is cheap: on a finer mesh where the outline asks for it, slower where a ply is thrown,
+  /// with less fibre inertia where a run fails.
   void begin() {
     while (!(base_ = runner_.run(base_.options, baselines_)).valid()) {
       FemOptions& options = base_.options;
       const bool ended = std::all_of(base_.outcomes.begin(), base_.outcomes.end(), [](const Outcome& outcome) {
         return outcome.summary.status == RunStatus::done;
       });
-      if (options.time_scaling > 1 && (ended || options.fibre_mass_scaling <= 1)) {
+      const bool built = std::any_of(base_.outcomes.begin(), base_.outcomes.end(),
+                                     [](const Outcome& outcome) { return outcome.summary.steps > 0; });
+      if (!built && options.mesh_size > case_.fidelities.at(kReport).mesh_size) {
+        options.mesh_size = std::max(0.5 * options.mesh_size, case_.fidelities.at(kReport).mesh_size);
+      } else if (options.time_scaling > 1 && (ended || options.fibre_mass_scaling <= 1)) {
         options.time_scaling = std::max(1.0, 0.5 * options.time_scaling);
       } else if (options.fibre_mass_scaling > 1) {
         options.fibre_mass_scaling = std::max(1.0, std::floor(0.5 * options.fibre_mass_scaling));
@@ -147,22 +157,34 @@ class Chooser {
   }
 
   void add_levels(double FemOptions::*knob, const std::vector<SettingRuns>& tried) {
-    size_t careful = 0;  // the last that ran to its end
-    for (size_t k = 0; k < tried.size(); ++k) careful = tried[k].valid() ? k : careful;
     if (knob == &FemOptions::mesh_size) mesh_levels_ = knobs_.size();
     std::vector<Level> levels;
-    for (size_t k = 0; k < tried.size(); ++k) {
-      Level level{.knob = knob, .options = tried[k].options};
-      level.error = difference(tried[k], tried[careful], case_.score);
-      level.updates = tried[k].updates;
-      level.seconds = tried[k].seconds;
-      level.careful = k == careful;
+    for (const SettingRuns& runs : tried) {
+      Level level{.knob = knob, .options = runs.options, .updates = runs.updates, .seconds = runs.seconds};
+      if (!runs.valid()) level.error = level.objective_error = kInfinity;
       levels.push_back(level);
     }
+    const auto is_valid = [](const SettingRuns& runs) { return runs.valid(); };
+    const auto careful = std::find_if(tried.rbegin(), tried.rend(), is_valid);  // the last that ran to its end
+    const auto before = std::find_if(careful + 1, tried.rend(), is_valid);
+    levels[size_t(tried.rend() - careful - 1)].careful = true;
     // The whole effect of rates is known; of what has an end that nobody reaches, the last step is the error. And what
-    // comes closer than something finer does so by chance.
-    if (knob && careful > 0) levels[careful].error = levels[careful - 1].error;
-    for (size_t k = careful; knob && k-- > 0;) levels[k].error = std::max(levels[k].error, levels[k + 1].error);
+    // comes closer than something finer does so by chance. Of one that could not be turned nothing is known.
+    double error = 0, objective_error = 0;
+    if (knob && before == tried.rend()) error = objective_error = kUnknownError;
+    if (knob && before != tried.rend()) {
+      error = difference(*before, *careful, case_.score);
+      objective_error = objective_difference(*before, *careful);
+    }
+    for (auto runs = careful; runs != tried.rend(); ++runs) {
+      if (!runs->valid()) continue;
+      const double own = difference(*runs, *careful, case_.score), objective = objective_difference(*runs, *careful);
+      error = knob ? std::max(error, own) : own;
+      objective_error = knob ? std::max(objective_error, objective) : objective;
+      Level& level = levels[size_t(tried.rend() - runs - 1)];
+      level.error = error;
+      level.objective_error = objective_error;
+    }
     knobs_.push_back(levels);
     choice_.levels.insert(choice_.levels.end(), levels.begin(), levels.end());
   }
@@ -170,7 +192,7 @@ class Chooser {
   /// All combinations, by increasing cost.
   void combine() {
     combinations_ = {
-        {.options = base_.options, .error = 0, .updates = base_.updates, .seconds = base_.seconds}};
+        {.options = base_.options, .error = 0, .objective_error = 0, .updates = base_.updates, .seconds = base_.seconds}};
     for (const std::vector<Level>& levels : knobs_) {
       std::vector<Combination> grown;
       for (const Combination& before : combinations_) {
@@ -181,6 +203,7 @@ class Chooser {
           // Curves at rates are steeper: more fibre inertia than in the base makes drapes unstable with them.
           if (next.options.rates && next.options.fibre_mass_scaling > base_.options.fibre_mass_scaling) continue;
           next.error += level.error;
+          next.objective_error += level.objective_error;
           next.updates *= level.updates / base_.updates;
           // An update costs more on a small mesh; but times are noisy, so only meshes are told apart by them.
           const bool mesh = level.knob == &FemOptions::mesh_size;
@@ -217,16 +240,20 @@ class Chooser {
   void pick_report() {
     const OptimiseOptions& optimise = case_.optimise;
     const auto any = [](const Combination&) { return true; };
-    const Combination wanted = *cheapest(kReportError, any);  // the base is one
+    const Combination wanted = *cheapest(kReportError, any);  // the base is calm, and it ran
     const int runs = 2 + optimise.finalists + 1;
-    const double rounds = std::ceil(double(runs) / threads_);
+    const double rounds = std::ceil(double(runs) / std::min(threads_, kReportsSideBySide));
     const auto paid = [&](const Combination& one) {
       return optimise.evaluations > 0 || rounds * one.seconds <= kReportsShare * optimise.budget;
     };
-    const Combination report = cheapest(kReportError, paid).value_or(combinations_.front());
+    const Combination report = cheapest(kReportError, paid).value_or(*cheapest(kInfinity, any));
     keep(kReport, report, std::numeric_limits<double>::quiet_NaN());
     report_updates_ = report.updates;
     if (report.error <= kReportError) return;
+    if (report.error >= kUnknownError) {
+      choice_.message = "by how much results at `report` are off could not be measured: runs that would tell fail";
+      return;
+    }
     choice_.message = fmt::format("results at `report` may be off by {:.1f} %, more than the {:.0f} % that are wanted",
                                   1e2 * report.error, 1e2 * kReportError);
     if (wanted.error < report.error)
@@ -294,7 +321,7 @@ class Chooser {
   }
 
   void keep(const char* name, const Combination& one, double ranks) {
-    choice_.chosen.push_back({name, one.options, one.error, ranks, one.seconds});
+    choice_.chosen.push_back({name, one.options, one.error, one.objective_error, ranks, one.seconds});
   }
 
   const Case& case_;

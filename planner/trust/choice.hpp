@@ -27,7 +27,8 @@ inline constexpr double kChoiceShare = 0.1, kReportsShare = 0.4;
 struct Level {
   double FemOptions::*knob = nullptr;  ///< null: rates
   FemOptions options;
-  double error = 0;       ///< relative; of the most careful one what the one before it differs by
+  double error = 0;       ///< relative, of gap and edge; of the most careful one what the one before it differs by
+  double objective_error = 0;  ///< the same of the objective
   double updates = 0;     ///< element updates of a run
   double seconds = 0;     ///< of a run on one core [s]
   bool careful = false;   ///< the most careful one
@@ -36,7 +37,7 @@ struct Level {
 struct ChosenFidelity {
   std::string name;
   FemOptions options;
-  double error = 0;                                       ///< estimated, relative: sum over the knobs
+  double error = 0, objective_error = 0;                  ///< estimated, relative: sums over the knobs
   double ranks = std::numeric_limits<double>::quiet_NaN();  ///< Spearman, where it was measured
   double seconds = 0;                                     ///< of a run on one core, estimated [s]
 };

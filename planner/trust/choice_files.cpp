@@ -1,7 +1,7 @@
 // The choice of numerical settings as people and programs see it.
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "planner/base/parallel.hpp"
@@ -29,7 +29,7 @@ std::string choice_table(const FidelityChoice& choice, const OptimiseOptions& op
   for (const ChosenFidelity& one : choice.chosen) {
     text += fmt::format("    {:<10}{:<40}{:>10}{:>8}{:>10}", one.name, setting_text(one.options),
                         fixed(1e2 * one.error, 1), fixed(one.ranks, 2), fixed(one.seconds, 1));
-    text += timed ? fmt::format("{:>21}\n", int((optimise.budget - choice.seconds) / one.seconds * thread_count(threads))) : "\n";
+    text += timed ? fmt::format("{:>21}\n", std::max(0, int((optimise.budget - choice.seconds) / one.seconds * thread_count(threads)))) : "\n";
   }
   if (!choice.ranked_against.empty()) text += fmt::format("    (ranks: against {})\n", choice.ranked_against);
   if (!choice.message.empty()) text += "    " + choice.message + "\n";
@@ -42,6 +42,7 @@ nlohmann::json choice_json(const FidelityChoice& choice) {
     levels.push_back({{"knob", knob_name(level)},
                       {"setting", setting_text(level.options)},
                       {"error", finite(level.error)},
+                      {"objective_error", finite(level.objective_error)},
                       {"element_updates", level.updates},
                       {"seconds", level.seconds},
                       {"most_careful", level.careful}});
@@ -50,6 +51,7 @@ nlohmann::json choice_json(const FidelityChoice& choice) {
     chosen.push_back({{"fidelity", one.name},
                       {"setting", setting_text(one.options)},
                       {"error", one.error},
+                      {"objective_error", one.objective_error},
                       {"ranks", finite(one.ranks)},
                       {"seconds", one.seconds}});
   }

@@ -40,6 +40,16 @@ double difference(const SettingRuns& a, const SettingRuns& b, const ScoreOptions
   return largest;
 }
 
+double objective_difference(const SettingRuns& a, const SettingRuns& b) {
+  if (!a.valid() || !b.valid()) return std::numeric_limits<double>::infinity();
+  double largest = 0;
+  for (size_t k = 0; k < std::min(a.outcomes.size(), b.outcomes.size()); ++k) {
+    const double one = a.outcomes[k].score.objective, other = b.outcomes[k].score.objective;
+    if (one != other) largest = std::max(largest, std::abs(one - other) / std::abs(other));
+  }
+  return largest;
+}
+
 SettingRunner::SettingRunner(const Case& definition, EvaluationLog& log, int threads, std::function<bool()> stop,
                std::function<void(const Progress&)> progress)
     : case_(definition), log_(log), threads_(threads), stop_(std::move(stop)), progress_(std::move(progress)) {}
@@ -54,19 +64,23 @@ SettingRuns SettingRunner::run(const FemOptions& options, const std::vector<Sche
   };
   SettingRuns runs{.options = options, .outcomes = {}};
   runs.outcomes = make_batch_evaluate(evaluate, log_, threads_, 0, stop_)(schedules, name, "settings");
-  const auto elements = double(problem.model(name).scene().mesh.element_count());
-  for (const Outcome& outcome : runs.outcomes) {
-    runs.updates += elements * double(outcome.summary.steps) / double(schedules.size());
-    runs.seconds += outcome.wall_seconds / double(schedules.size());
+  const auto count = double(schedules.size());
+  for (size_t k = 0; k < schedules.size(); ++k) {
+    const Outcome& outcome = runs.outcomes[k];
+    // A case that cannot be built at this setting has no model to ask.
+    const double updates = outcome.summary.steps > 0
+                               ? double(problem.model(name).scene().mesh.element_count()) * double(outcome.summary.steps)
+                               : 0;
+    runs.updates += updates / count;
+    runs.seconds += outcome.wall_seconds / count;
     elapsed_ = std::max(elapsed_, outcome.elapsed);
+    if (counted_.emplace(name, schedule_hash(schedules[k])).second) updates_ += updates;
   }
-  runs_ += int(schedules.size());
-  updates_ += runs.updates * double(schedules.size());
   double best = std::numeric_limits<double>::infinity();
   for (const Outcome& outcome : runs.outcomes) best = std::min(best, value_of(outcome));
   if (progress_)
     progress_({.stage = "settings",
-               .done = runs_,
+               .done = this->runs(),
                .best = best,
                .seconds_left = std::numeric_limits<double>::quiet_NaN()});
   return runs;

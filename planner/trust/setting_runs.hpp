@@ -1,8 +1,11 @@
 // Runs of a few schedules at one numerical setting, and by how much settings differ.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "planner/drape/problem.hpp"
@@ -32,6 +35,9 @@ std::string setting_text(const FemOptions& options);
 /// Infinite if a run failed.
 double difference(const SettingRuns& a, const SettingRuns& b, const ScoreOptions& score);
 
+/// The same of the objective, relative to the second one's.
+double objective_difference(const SettingRuns& a, const SettingRuns& b);
+
 /// Runs a case at settings through the log of its plan: known ones are served from there.
 class SettingRunner {
  public:
@@ -45,7 +51,7 @@ class SettingRunner {
 
   /// The log's clock at the last of its runs [s].
   [[nodiscard]] double elapsed() const { return elapsed_; }
-  [[nodiscard]] int runs() const { return runs_; }
+  [[nodiscard]] int runs() const { return int(counted_.size()); }
   /// Of elements, in all of its runs.
   [[nodiscard]] double updates() const { return updates_; }
 
@@ -56,7 +62,7 @@ class SettingRunner {
   std::function<bool()> stop_;
   std::function<void(const Progress&)> progress_;
   double elapsed_ = 0, updates_ = 0;
-  int runs_ = 0;
+  std::set<std::pair<std::string, std::uint64_t>> counted_;  ///< setting and schedule of each run
 };
 
 }  // namespace drapeplan

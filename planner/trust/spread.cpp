@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "fem/core/hash.hpp"
 #include "planner/base/parallel.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/search/batch_evaluate.hpp"
@@ -36,6 +35,13 @@ void stretch(Schedule& schedule, double factor) {
   }
 }
 
+/// Places of the joints, where the schedule commands them: they are the rig's.
+void move(Schedule& schedule, const std::function<void(Eigen::Vector2d&)>& change) {
+  for (std::vector<PlaneKnot>& path : schedule.plane_paths) {
+    for (PlaneKnot& knot : path) change(knot.xy);
+  }
+}
+
 Outcome drape(const DrapeProblem& problem, const Disturbance& disturbance, Schedule schedule,
               const std::string& fidelity) {
   Case plant = problem.definition();  // with the lengths that its interlinks have
@@ -45,7 +51,7 @@ Outcome drape(const DrapeProblem& problem, const Disturbance& disturbance, Sched
 }
 
 /// Smallest, mean and largest value of a part of the score over all plants in which the drape ran to its end.
-nlohmann::json range_of(const Spread& spread, Score DisturbedPair::*schedule, double Score::*part) {
+nlohmann::json range_of(const PlantSpread& spread, Score DisturbedPair::*schedule, double Score::*part) {
   double least = std::numeric_limits<double>::infinity(), most = -least, sum = 0;
   int count = 0;
   for (const DisturbedPair& pair : spread.pairs) {
@@ -74,10 +80,16 @@ std::vector<Disturbance> disturbances(const Case& definition) {
     }
     for (const int axis : {0, 1}) {
       add(fmt::format("rig {} {:.0f} mm in {}", mark, 1e3 * kPlacementSpread, axis == 0 ? "x" : "y"),
-          [sign, axis](Case& plant, Schedule&) { plant.ply.position[axis] += sign * kPlacementSpread; });
+          [sign, axis](Case& plant, Schedule& schedule) {
+            plant.ply.position[axis] += sign * kPlacementSpread;
+            move(schedule, [&](Eigen::Vector2d& xy) { xy[axis] += sign * kPlacementSpread; });
+          });
     }
-    add(fmt::format("rig turned by {} {:.0f} deg", mark, kAngleSpreadDeg), [sign](Case& plant, Schedule&) {
-      plant.ply.angle += sign * kAngleSpreadDeg * std::numbers::pi / 180;
+    add(fmt::format("rig turned by {} {:.0f} deg", mark, kAngleSpreadDeg), [sign](Case& plant, Schedule& schedule) {
+      const double turn = sign * kAngleSpreadDeg * std::numbers::pi / 180;
+      plant.ply.angle += turn;
+      const Eigen::Vector2d centre = plant.ply.position;
+      move(schedule, [&](Eigen::Vector2d& xy) { xy = centre + Eigen::Rotation2Dd(turn) * (xy - centre); });
     });
     add(fmt::format("shear stress {} {:.0f} %", mark, 1e2 * kShearSpread),
         [sign](Case& plant, Schedule&) { scale(plant.material.shear, 1 + sign * kShearSpread); });
@@ -90,44 +102,56 @@ std::vector<Disturbance> disturbances(const Case& definition) {
   return list;
 }
 
-int Spread::better() const {
+int PlantSpread::better() const {
   return int(std::count_if(pairs.begin() + 1, pairs.end(), [](const DisturbedPair& pair) { return pair.better(); }));
 }
 
-Spread spread_of(const DrapeProblem& problem, const Schedule& best, const Schedule& baseline,
-                 const std::vector<std::string>& fidelities, double seconds, EvaluationLog& log, int threads,
-                 const std::function<bool()>& stop) {
+std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule& best, const Schedule& baseline,
+                                     const SpreadOptions& options, EvaluationLog& log) {
   const std::vector<Disturbance> list = disturbances(problem.definition());
-  const int runs = 2 * int(list.size());
   // Both schedules in each plant, one after the other: the undisturbed pair tells what all will take.
-  const auto evaluate = [&](const std::string& fidelity, int from, int to) {
-    std::vector<Outcome> outcomes(static_cast<size_t>(to - from));
-    std::vector<std::uint64_t> keys(outcomes.size());
-    const auto one = [&](int k) {
-      if (stop && stop()) throw Interrupted();
-      const Disturbance& disturbance = list[size_t((from + k) / 2)];
-      const Schedule& schedule = (from + k) % 2 == 0 ? best : baseline;
-      Fnv1a hash;
-      hash.add(std::string_view("disturbed: " + disturbance.name));
-      keys[size_t(k)] = candidate_hash(hash.value(), schedule);
-      outcomes[size_t(k)] = log.evaluate_once(keys[size_t(k)], fidelity, [&] {
-        return scored([&] { return drape(problem, disturbance, schedule, fidelity); });
-      });
+  const auto evaluate = [&](const std::string& fidelity, size_t from, size_t to) {
+    std::vector<Outcome> outcomes(to - from);
+    std::vector<char> finished(outcomes.size(), 0);
+    const auto schedule_of = [&](size_t k) -> const Schedule& { return (from + k) % 2 == 0 ? best : baseline; };
+    // In the log a plant is a fidelity of its own: its objectives are not those of the case.
+    const auto name_of = [&](size_t k) {
+      const std::string& plant = list[(from + k) / 2].name;
+      return plant.empty() ? fidelity : fidelity + ", " + plant;
     };
-    parallel_for(to - from, one, threads);
-    for (size_t k = 0; k < outcomes.size(); ++k) {
-      if (!outcomes[k].cached) log.write(keys[k], fidelity, "spread", outcomes[k]);
+    const auto write = [&] {
+      for (size_t k = 0; k < outcomes.size(); ++k) {
+        if (finished[k] && !outcomes[k].cached)
+          log.write(candidate_hash(options.design, schedule_of(k)), name_of(k), "spread", outcomes[k]);
+      }
+    };
+    const auto one = [&](int i) {
+      const auto k = size_t(i);
+      if (options.stop && options.stop()) throw Interrupted();
+      outcomes[k] = log.evaluate_once(candidate_hash(options.design, schedule_of(k)), name_of(k), [&] {
+        return scored([&] { return drape(problem, list[(from + k) / 2], schedule_of(k), fidelity); });
+      });
+      finished[k] = 1;
+    };
+    try {
+      parallel_for(int(outcomes.size()), one, options.threads);
+    } catch (...) {
+      write();
+      throw;
     }
+    write();
     return outcomes;
   };
-  Spread spread;
+  const size_t runs = 2 * list.size();
+  PlantSpread spread;
   std::vector<Outcome> outcomes;
-  for (auto name = fidelities.rbegin(); name != fidelities.rend(); ++name) {
-    spread.fidelity = *name;
+  for (auto name = options.fidelities.rbegin(); name != options.fidelities.rend() && spread.fidelity.empty(); ++name) {
     outcomes = evaluate(*name, 0, 2);
     const double each = 0.5 * (outcomes[0].wall_seconds + outcomes[1].wall_seconds);
-    if (seconds <= 0 || runs * each <= seconds * thread_count(threads)) break;
+    if (options.seconds <= 0 || double(runs) * each <= options.seconds * thread_count(options.threads))
+      spread.fidelity = *name;
   }
+  if (spread.fidelity.empty()) return {};
   const std::vector<Outcome> others = evaluate(spread.fidelity, 2, runs);
   outcomes.insert(outcomes.end(), others.begin(), others.end());
   for (size_t k = 0; k < list.size(); ++k)
@@ -135,28 +159,35 @@ Spread spread_of(const DrapeProblem& problem, const Schedule& best, const Schedu
   return spread;
 }
 
-std::string spread_text(const Spread& spread) {
+std::string spread_text(const PlantSpread& spread) {
   const bool is_baseline = std::all_of(spread.pairs.begin(), spread.pairs.end(), [](const DisturbedPair& pair) {
     return pair.best.objective == pair.baseline.objective;
   });
-  std::string worst;
+  std::string worst, failed;
+  int failures = 0;
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const DisturbedPair& pair : spread.pairs) {
-    if (!pair.best.valid) return fmt::format("with {} the optimised sequence fails: {}", pair.disturbance,
-                                             pair.best.reason);
+    const std::string name = pair.disturbance.empty() ? "nothing changed" : pair.disturbance;
+    if (!pair.best.valid) {
+      ++failures;
+      failed = name + ": " + pair.best.reason;
+      continue;
+    }
     least = std::min(least, pair.best.objective);
-    if (pair.best.objective > most) most = pair.best.objective, worst = pair.disturbance;
+    if (pair.best.objective > most) most = pair.best.objective, worst = name;
   }
+  if (failures == int(spread.pairs.size())) return "it fails in every plant that differs, the last with " + failed;
   std::string text = fmt::format(
       "in {} plants that differ (friction, placement, shear, joints, times; at `{}`) its objective is {:.2f} to {:.2f}, "
       "worst with {}",
-      spread.plants(), spread.fidelity, least, most, worst.empty() ? "none of these" : worst);
+      spread.plants(), spread.fidelity, least, most, worst);
+  if (failures > 0) text += fmt::format("; it fails in {}, the last with {}", failures, failed);
   if (!is_baseline)
     text += fmt::format("; it stays better than the better baseline in {} of them", spread.better());
   return text;
 }
 
-nlohmann::json spread_json(const Spread& spread) {
+nlohmann::json spread_json(const PlantSpread& spread) {
   nlohmann::json plants = nlohmann::json::array();
   for (const DisturbedPair& pair : spread.pairs) {
     plants.push_back({{"disturbance", pair.disturbance.empty() ? "none" : pair.disturbance},

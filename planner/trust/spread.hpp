@@ -1,8 +1,10 @@
 // How a planned sequence does where the plant is a little different from the case.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +35,7 @@ struct DisturbedPair {
   [[nodiscard]] bool better() const { return best.valid && (!baseline.valid || best.objective < baseline.objective); }
 };
 
-struct Spread {
+struct PlantSpread {
   std::string fidelity;
   std::vector<DisturbedPair> pairs;  ///< the undisturbed one first
   /// In how many of the disturbed plants the best schedule stays better than the baseline.
@@ -41,15 +43,22 @@ struct Spread {
   [[nodiscard]] int plants() const { return int(pairs.size()) - 1; }
 };
 
-/// Runs both schedules, as they are commanded, in every disturbed plant, through the log. @param fidelities  to choose
-/// from, cheapest first: the last at which all runs take at most `seconds` side by side; 0: the last.
-/// @throws Interrupted once `stop` says so.
-Spread spread_of(const DrapeProblem& problem, const Schedule& best, const Schedule& baseline,
-                 const std::vector<std::string>& fidelities, double seconds, EvaluationLog& log, int threads,
-                 const std::function<bool()>& stop);
+struct SpreadOptions {
+  std::vector<std::string> fidelities;  ///< to choose from, cheapest first
+  double seconds = 0;                   ///< that all runs may take side by side [s]; 0: no limit
+  std::uint64_t design = 0;             ///< of the rig, see candidate_hash
+  int threads = 0;
+  std::function<bool()> stop = {};
+};
+
+/// Runs both schedules, as they are commanded, in every disturbed plant, through the log: at the finest fidelity that
+/// the time is enough for; nothing where it is enough for none.
+/// @throws Interrupted once `stop` says so; what has run is in the log.
+std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule& best, const Schedule& baseline,
+                                     const SpreadOptions& options, EvaluationLog& log);
 
 /// "in 14 plants that differ (...) its objective is 21.10 to 23.00, worst with ...".
-std::string spread_text(const Spread& spread);
-nlohmann::json spread_json(const Spread& spread);
+std::string spread_text(const PlantSpread& spread);
+nlohmann::json spread_json(const PlantSpread& spread);
 
 }  // namespace drapeplan

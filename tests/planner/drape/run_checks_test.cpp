@@ -20,6 +20,7 @@ Drape calm_drape() {
   RunSummary& run = drape.run.summary;
   run.steps = 10000;
   run.energy.external = 1;
+  run.energy.internal = 0.5;
   run.energy.damping = kDampingLimit;
   run.largest_kinetic_ratio = kKineticLimit;
   run.largest_hourglass_share = kHourglassLimit;
@@ -58,6 +59,13 @@ TEST(RunChecks, SayNothingOfACalmDrapeAndNameWhatIsNot) {
   drape = calm_drape();
   drape.score.saturated = 0.5;
   EXPECT_EQ(checks_of(drape), Names{"saturated"});
+}
+
+TEST(RunChecks, DoNotCallAPlyThrownThatSinksUndeformed) {
+  Drape drape = calm_drape();
+  drape.run.summary.largest_kinetic_ratio = 50;
+  drape.run.summary.energy.internal = 0.09;
+  EXPECT_EQ(checks_of(drape), Names{});
 }
 
 TEST(RunChecks, SeePadsThatReachBeyondThePly) {

@@ -143,7 +143,7 @@ TEST(Claim, StandsOnlyBeyondTheError) {
   StagedResult far = searched(30, 28, 21);
   claim_beyond(0.05, far);
   EXPECT_TRUE(far.beats_baselines);
-  EXPECT_EQ(far.message, "better; figures may be off by 5.0 %");
+  EXPECT_EQ(far.message, "better; objectives may be off by 5.0 %");
   StagedResult near = searched(30, 28, 27);
   claim_beyond(0.05, near);
   EXPECT_FALSE(near.beats_baselines);

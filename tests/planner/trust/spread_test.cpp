@@ -40,35 +40,57 @@ TEST(Disturbances, ChangeOneThingEachUpAndDown) {
   EXPECT_NEAR(*late.release[0], 3.15, 1e-12);
 }
 
-TEST(Spread, IsTheSameForAnyNumberOfThreadsAndFromTheLog) {
+TEST(PlantSpread, IsTheSameForAnyNumberOfThreadsAndFromTheLog) {
   const DrapeProblem problem(coarse_case());
   const Schedule uniform = to_schedule(problem.frame(), uniform_strokes(problem.frame()));
   const Schedule wave = to_schedule(problem.frame(), wave_strokes(problem.frame()));
   EvaluationLog log, other;
-  const Spread spread = spread_of(problem, wave, uniform, {kReport}, 0, log, 1, {});
+  const PlantSpread spread = spread_of(problem, wave, uniform, {.fidelities = {kReport}, .threads = 1}, log).value();
   ASSERT_EQ(spread.pairs.size(), 15u);
   EXPECT_EQ(spread.fidelity, kReport);
   EXPECT_EQ(spread.pairs[0].best.objective, problem.run(wave, kReport).score.objective);
   EXPECT_EQ(spread.pairs[0].baseline.objective, problem.run(uniform, kReport).score.objective);
   EXPECT_NE(spread.pairs[1].best.objective, spread.pairs[0].best.objective);
-  EXPECT_EQ(spread_json(spread), spread_json(spread_of(problem, wave, uniform, {kReport}, 0, other, 2, {})));
+  EXPECT_EQ(spread_json(spread), spread_json(*spread_of(problem, wave, uniform, {.fidelities = {kReport}, .threads = 2}, other)));
   EXPECT_EQ(log.size(), 30);
-  spread_of(problem, wave, uniform, {kReport}, 0, log, 1, {});
+  spread_of(problem, wave, uniform, {.fidelities = {kReport}, .threads = 1}, log);
   EXPECT_EQ(log.size(), 30) << "all was served from the log";
 }
 
-TEST(Spread, SaysHowOftenTheBestStaysBetterAndWhatFails) {
+TEST(PlantSpread, SaysHowOftenTheBestStaysBetterAndWhatFails) {
   Score good, bad, failed;
   good.valid = bad.valid = true;
   good.objective = 1;
   bad.objective = 2;
   failed.reason = "it diverged";
-  Spread spread{.fidelity = "search", .pairs = {{"", good, bad}, {"a", bad, good}, {"b", good, failed}}};
+  PlantSpread spread{.fidelity = "search", .pairs = {{"", good, bad}, {"a", bad, good}, {"b", good, failed}}};
   EXPECT_EQ(spread.better(), 1);
   EXPECT_NE(spread_text(spread).find("in 1 of them"), std::string::npos) << spread_text(spread);
   EXPECT_NE(spread_text(spread).find("worst with a"), std::string::npos);
   spread.pairs.push_back({"c", failed, good});
-  EXPECT_EQ(spread_text(spread), "with c the optimised sequence fails: it diverged");
+  EXPECT_NE(spread_text(spread).find("it fails in 1, the last with c: it diverged"), std::string::npos);
+}
+
+TEST(PlantSpread, IsLeftOutWhereTheTimeIsNotEnough) {
+  const DrapeProblem problem(coarse_case());
+  const Schedule uniform = to_schedule(problem.frame(), uniform_strokes(problem.frame()));
+  EvaluationLog log;
+  EXPECT_FALSE(spread_of(problem, uniform, uniform, {.fidelities = {kReport}, .seconds = 1e-9, .threads = 1}, log));
+  EXPECT_EQ(log.size(), 1) << "the undisturbed run alone tells so";
+}
+
+TEST(Disturbances, MoveTheCommandedPlacesWithTheRig) {
+  const Case nominal = coarse_case();
+  for (const Disturbance& disturbance : disturbances(nominal)) {
+    if (disturbance.name.find("rig") == std::string::npos) continue;
+    Case plant = nominal;
+    const Eigen::Vector2d corner = nominal.ply.position + Eigen::Vector2d(0.1, 0);
+    Schedule schedule{.paths = {{{0, 0.1}}}, .plane_paths = {{{0, corner}}}};
+    disturbance.apply(plant, schedule);
+    const Eigen::Vector2d joint =
+        plant.ply.position + Eigen::Rotation2Dd(plant.ply.angle) * Eigen::Vector2d(0.1, 0);
+    EXPECT_LT((schedule.plane_paths[0][0].xy - joint).norm(), 1e-12) << disturbance.name;
+  }
 }
 
 }  // namespace
