@@ -170,6 +170,7 @@ struct PlannedCase {
   json result;
   std::string text;    ///< for people
   bool valid = false;  ///< at least the best drape could be simulated
+  std::string reason;  ///< if not
   bool interrupted = false;
 };
 
@@ -275,6 +276,7 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
   return {.result = std::move(document),
           .text = result_text(planned, result, trust, out.path()),
           .valid = result.best.score.valid,
+          .reason = result.best.score.reason,
           .interrupted = interrupted};
 }
 
@@ -311,7 +313,8 @@ ExitCode plan_and_add(Case definition, const std::string& file, const PlanVerbOp
     PlannedCase planned = plan_case(std::move(definition), options, folder);
     results.push_back(std::move(planned.result));
     if (!options.common.json && !options.common.quiet) print(planned.text, true);
-    if (!planned.valid) std::cerr << file << ": no drape could be simulated to its end\n";
+    if (!planned.valid)
+      std::cerr << file << ": no drape could be simulated to its end; the last: " << planned.reason << '\n';
     return planned.valid && !planned.interrupted ? kDone : kNotFinished;
   } catch (...) {
     Failure failure = failure_of(std::current_exception());

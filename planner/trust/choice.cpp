@@ -168,11 +168,13 @@ class Chooser {
     const auto careful = std::find_if(tried.rbegin(), tried.rend(), is_valid);  // the last that ran to its end
     const auto before = std::find_if(careful + 1, tried.rend(), is_valid);
     levels[size_t(tried.rend() - careful - 1)].careful = true;
-    // The whole effect of rates is known; of what has an end that nobody reaches, the last step is the error. And what
-    // comes closer than something finer does so by chance. Of one that could not be turned nothing is known.
+    // Rates as they are, the schedule's own clock and no added mass are exact. Where the end is not reached, the last step
+    // is the error. And what comes closer than something finer does so by chance. Of a knob that could not be turned
+    // nothing is known.
+    const bool exact = !knob || (knob != &FemOptions::mesh_size && careful->options.*knob == 1);
     double error = 0, objective_error = 0;
-    if (knob && before == tried.rend()) error = objective_error = kUnknownError;
-    if (knob && before != tried.rend()) {
+    if (!exact && before == tried.rend()) error = objective_error = kUnknownError;
+    if (!exact && before != tried.rend()) {
       error = difference(*before, *careful, case_.score);
       objective_error = objective_difference(*before, *careful);
     }
@@ -266,7 +268,7 @@ class Chooser {
     const std::vector<Level>& meshes = knobs_[mesh_levels_];
     const int more = kRanked - int(baselines_.size());
     for (auto mesh = meshes.rbegin(); mesh != meshes.rend() && !careful_; ++mesh) {
-      if (mesh->updates > base_.updates && affords(mesh->updates, mesh->seconds, more))
+      if (std::isfinite(mesh->error) && mesh->updates > base_.updates && affords(mesh->updates, mesh->seconds, more))
         careful_ = runner_.run(mesh->options, spread_schedules(frame_, kRanked));
     }
     if (!careful_) return;
@@ -293,7 +295,8 @@ class Chooser {
     if (!screen_) return;
     const double wanted = std::min(kSearchError, 0.5 * screen_->error);
     for (const Combination& one : combinations_) {
-      if (one.updates < 2 * screen_->updates || one.updates > 0.5 * report_updates_ || one.error > wanted || !calm(one)) continue;
+      const bool between = one.updates >= 2 * screen_->updates && one.updates <= 0.5 * report_updates_;
+      if (!between || one.error > wanted || !calm(one)) continue;
       if (!affords(one.updates, one.seconds, kRanked)) return;
       const double ranks = ranks_of(runner_.run(one.options, spread_schedules(frame_, kRanked)), *careful_);
       if (ranks >= kScreenRanks) keep(kSearched.back(), one, ranks);
