@@ -174,8 +174,8 @@ struct Case {
   OptimiseOptions optimise;
   std::map<std::string, FemOptions>
       fidelities;  ///< at least "report"; every one starts from the `fem` section
-  /// The file of a drape has neither `fem` nor `fidelities`: they follow from the sizes of rig, mold and schedule, and
-  /// a plan measures what they are worth (planner/trust/choice.hpp).
+  /// The file of a drape has neither `fem` nor `fidelities`: they follow from the sizes of rig, mold and
+  /// schedule, and a plan measures what they are worth (planner/trust/choice.hpp).
   bool chooses_fidelities = false;
 };
 

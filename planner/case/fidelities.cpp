@@ -7,24 +7,25 @@
 namespace drapeplan {
 namespace {
 
-/// Cells along the radius of a pad. Where pads begin and end decides over gaps, so meshes are told apart by this number
-/// (tests/bench/study.md).
+/// Cells along the radius of a pad. Where pads begin and end decides over gaps, so meshes are told apart by
+/// this number (tests/bench/study.md).
 constexpr int kScreenCells = 1, kSearchCells = 2, kReportCells = 3;
 /// Cells are a little longer than their share of the radius: three of equal area reach to 1.005 of it.
 constexpr double kCellSlack = 1.01;
-/// A pad that is much smaller than the ply between pads gives no size to its cells: at most so many to a spacing, for
-/// one cell along the radius.
+/// A pad that is much smaller than the ply between pads gives no size to its cells: at most so many to a
+/// spacing, for one cell along the radius.
 constexpr double kCellsPerSpacing = 8;
 /// A cell turns at most by this much over the mold, for one cell along the radius [rad].
 constexpr double kTurn = 0.25;
 
 constexpr double kLeastCell = 1e-4, kLargestCell = 1;  // [m], as `fem.mesh_size` allows
 
-/// A stroke takes at least so many times what the ply needs to fall through its height: then what inertia changes is
-/// a few percent of a gap (tests/bench/study.md).
+/// A stroke takes at least so many times what the ply needs to fall through its height: then what inertia
+/// changes is a few percent of a gap (tests/bench/study.md).
 constexpr double kFalls = 2.5;
 constexpr double kLargestTimeScaling = 8;
-constexpr double kSearchHaste = 1.5;  ///< of the cheaper fidelities over `report`; twice would throw a light ply
+constexpr double kSearchHaste =
+    1.5;  ///< of the cheaper fidelities over `report`; twice would throw a light ply
 constexpr double kStandardGravity = 9.81;  // [m/s^2], where the case has none
 constexpr double kReportFibreMass = 2, kSearchFibreMass = 3;
 
@@ -40,12 +41,13 @@ double smallest_radius(const Case& c) {
     const Eigen::Vector2d at = lower.array() + (upper - lower).array() * share / (kSamples - 1);
     const Jet jet = c.mold->jet(at.x(), at.y());
     const double slope = 1 + jet.zx * jet.zx + jet.zy * jet.zy;
-    const double mean = ((1 + jet.zy * jet.zy) * jet.zxx - 2 * jet.zx * jet.zy * jet.zxy +
-                         (1 + jet.zx * jet.zx) * jet.zyy) /
-                        (2 * std::pow(slope, 1.5));
+    const double mean =
+        ((1 + jet.zy * jet.zy) * jet.zxx - 2 * jet.zx * jet.zy * jet.zxy + (1 + jet.zx * jet.zx) * jet.zyy) /
+        (2 * std::pow(slope, 1.5));
     const double product = (jet.zxx * jet.zyy - jet.zxy * jet.zxy) / (slope * slope);
     const double curvature = std::abs(mean) + std::sqrt(std::max(mean * mean - product, 0.0));
-    if (std::isfinite(curvature)) largest = std::max(largest, curvature);  // beyond a sphere's equator it is not
+    if (std::isfinite(curvature))
+      largest = std::max(largest, curvature);  // beyond a sphere's equator it is not
   }
   return 1 / largest;
 }

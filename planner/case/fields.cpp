@@ -126,7 +126,8 @@ void visit_score(FieldVisitor& v, ScoreOptions& s) {
   v.field(
       {"strain_limit", &s.strain_limit, "Fibre strain above it is penalised", Dimension::none, positive(1)});
   v.field({"kinetic_limit", &s.kinetic_limit,
-           "Of the ply's kinetic over its internal energy, at the end of each tenth of a run but the first; a drape above "
+           "Of the ply's kinetic over its internal energy, at the end of each tenth of a run but the first; "
+           "a drape above "
            "it was thrown and has no score",
            Dimension::none, positive(1e9)});
   v.field({"lag_tolerance", &s.lag_tolerance,

@@ -92,8 +92,8 @@ Curve scaled(const Curve& curve, double factor);
 /// [Krogh], Eq. (5): lowest angular frequency of a clamped strip [1/s]. @param stiffness  D per width [N m].
 double strip_frequency(double stiffness, double areal_density, double length);
 
-/// `screen`, `search` and `report` of a drape whose file names no numerical settings, from the sizes of its rig, its
-/// mold and its schedule. @param definition  complete, with grippers and mold.
+/// `screen`, `search` and `report` of a drape whose file names no numerical settings, from the sizes of its
+/// rig, its mold and its schedule. @param definition  complete, with grippers and mold.
 std::map<std::string, FemOptions> fidelities_from_sizes(const Case& definition);
 
 /// Fields into a case and back. `complete` expects fields without errors.

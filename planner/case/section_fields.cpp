@@ -18,34 +18,37 @@ void visit_curve(FieldVisitor& v, CurveFields& fields, Dimension abscissa) {
            {},
            false,
            "needed without `file`"});
-  v.field({"file", &fields.file,
-           "Text table that holds the points instead, relative to the file that names it (with --set: to the case): "
-           "columns of strain and stress with units, as programs write them. Up to 100 rows that never fall are "
-           "taken as they are; others are smoothed, and the source says what the curve misses"});
+  v.field(
+      {"file", &fields.file,
+       "Text table that holds the points instead, relative to the file that names it (with --set: to the "
+       "case): "
+       "columns of strain and stress with units, as programs write them. Up to 100 rows that never fall are "
+       "taken as they are; others are smoothed, and the source says what the curve misses"});
   const bool named = !fields.columns.strain.empty() || !fields.columns.stress.empty();
-  v.section({"columns", "What columns of tables are called, where that is not usual", false, {}, true}, named, [&] {
-    v.field({"strain", &fields.columns.strain, "Name of the column of strains, or of shear angles"});
-    v.field({"stress", &fields.columns.stress, "Name of the column of stresses"});
-  });
+  v.section(
+      {"columns", "What columns of tables are called, where that is not usual", false, {}, true}, named, [&] {
+        v.field({"strain", &fields.columns.strain, "Name of the column of strains, or of shear angles"});
+        v.field({"stress", &fields.columns.stress, "Name of the column of stresses"});
+      });
   v.field({"factor", &fields.factor, "All stresses are multiplied by it", Dimension::none, positive()});
   v.field({"source", &fields.source, "What was measured, by whom, and what is assumed"});
   v.field({"valid_to", &fields.valid_to,
-           "How far the curve was measured and holds; a drape that goes beyond it says so", abscissa, positive(),
-           false, "not known"});
+           "How far the curve was measured and holds; a drape that goes beyond it says so", abscissa,
+           positive(), false, "not known"});
   v.field({"band", &fields.band, "R.m.s. of what specimens differ from the curve, as a share of its stress",
            Dimension::none, from(0), false, "not known"});
-  ObjectList rates =
-      object_list("rates", "Curves by the rate of strain, slowest first; absent: no dependence on the rate",
-                  fields.rates, [&v, abscissa](RateFields& rate) {
-                    v.field({"rate", &rate.rate, "Of growing strain; slower and faster than all: constant",
-                             Dimension::rate, from(0), true});
-                    v.field({"factor", &rate.factor, "Stresses of this rate are multiplied by it",
-                             Dimension::none, positive()});
-                    Field points{"points", Table{&rate.curve, abscissa}, "Curve at this rate"};
-                    points.default_words = "the points of the mode";
-                    v.field(points);
-                    v.field({"file", &rate.file, "Text table that holds the points instead, see `file` of the mode"});
-                  });
+  ObjectList rates = object_list(
+      "rates", "Curves by the rate of strain, slowest first; absent: no dependence on the rate", fields.rates,
+      [&v, abscissa](RateFields& rate) {
+        v.field({"rate", &rate.rate, "Of growing strain; slower and faster than all: constant",
+                 Dimension::rate, from(0), true});
+        v.field({"factor", &rate.factor, "Stresses of this rate are multiplied by it", Dimension::none,
+                 positive()});
+        Field points{"points", Table{&rate.curve, abscissa}, "Curve at this rate"};
+        points.default_words = "the points of the mode";
+        v.field(points);
+        v.field({"file", &rate.file, "Text table that holds the points instead, see `file` of the mode"});
+      });
   v.list(rates);
 }
 
@@ -74,7 +77,8 @@ class CurveFiles {
   void read(std::string& file, Curve& curve, const std::string& pointer, const std::string& which) {
     if (file.empty()) return;
     if (!curve.strain.empty())
-      return reader_.fail(pointer + "/file", "belongs to a curve without points; these would be read from it");
+      return reader_.fail(pointer + "/file",
+                          "belongs to a curve without points; these would be read from it");
     CurveReading reading = read_curve(reader_.file_at(pointer + "/file", file), abscissa_, fields_.columns);
     if (!reading.errors.empty()) return reader_.add_errors(pointer + "/file", reading.errors);
     curve = std::move(reading.curve);

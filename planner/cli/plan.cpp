@@ -190,7 +190,9 @@ std::string result_text(const DrapeProblem& problem, const PlanResult& result, c
   if (const std::string force = best_force_text(problem, result); !force.empty()) text += force + "\n";
   if (trust.spread) text += spread_text(*trust.spread) + "\n";
   if (!trust.spread && !result.search.interrupted && result.best.score.valid)
-    text += "plants that differ were not simulated: the time, or an interruption, left none for it (--resume goes on)\n";
+    text +=
+        "plants that differ were not simulated: the time, or an interruption, left none for it (--resume "
+        "goes on)\n";
   text += fmt::format("{} evaluations ({} failed) in {} s", result.search.evaluations,
                       result.search.failed_evaluations, std::llround(result.wall_seconds));
   if (result.best.score.valid) text += fmt::format("; report: {}", (folder / "report.html").string());
@@ -209,15 +211,16 @@ void build_models(const DrapeProblem& problem) {
 constexpr double kSpreadShare = 0.05;
 
 /// The best schedule and the better baseline in plants that differ; nothing where there is no time for it.
-std::optional<PlantSpread> spread_in_plants(const DrapeProblem& problem, const PlanResult& result, EvaluationLog& log,
-                                            const PlanOptions& planning) {
+std::optional<PlantSpread> spread_in_plants(const DrapeProblem& problem, const PlanResult& result,
+                                            EvaluationLog& log, const PlanOptions& planning) {
   const OptimiseOptions& optimise = problem.definition().optimise;
   const SpreadOptions options{.fidelities = plan_ladder(problem.definition()),
                               .seconds = optimise.evaluations > 0 ? 0 : kSpreadShare * optimise.budget,
                               .design = result.design ? design_hash(result.design->overrides) : 0,
                               .threads = planning.threads,
                               .stop = planning.stop};
-  return spread_of(problem, result.search.best.schedule, better_baseline(result.search).schedule, options, log);
+  return spread_of(problem, result.search.best.schedule, better_baseline(result.search).schedule, options,
+                   log);
 }
 
 /// Plans one case into its folder; throws what went wrong.

@@ -101,8 +101,10 @@ class DrapeProblem {
   /// fidelity presses. Scores are those of the whole run (but for largest strains and lags, which are looked at
   /// now and then, at other times in a longer run), also where the press would fail.
   [[nodiscard]] Drape run_for_objective(const Schedule& schedule, const std::string& fidelity) const;
-  /// Runs a schedule on another model: the case's ply, mold and rig with something disturbed. It is scored as the case.
-  [[nodiscard]] Drape run_on(const Model& model, const Schedule& schedule, int frames = 0, RunPart part = {}) const;
+  /// Runs a schedule on another model: the case's ply, mold and rig with something disturbed. It is scored as
+  /// the case.
+  [[nodiscard]] Drape run_on(const Model& model, const Schedule& schedule, int frames = 0,
+                             RunPart part = {}) const;
 
  private:
   /// Made by whoever asks first.

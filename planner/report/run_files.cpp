@@ -92,7 +92,8 @@ Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows, c
   return chart;
 }
 
-std::vector<std::string> notes_of(const DrapeProblem& problem, const Drape& best, const std::string& fidelity) {
+std::vector<std::string> notes_of(const DrapeProblem& problem, const Drape& best,
+                                  const std::string& fidelity) {
   std::vector<std::string> notes = map_warnings(problem.definition(), problem.mapping());
   const MaterialNotes& material = problem.definition().material_notes;
   const std::vector<std::string> beyond = drape_warnings(problem, best, fidelity);
@@ -242,15 +243,16 @@ namespace {
 
 /// The numerical settings that a plan chose, and what is known of them.
 ReportTable choice_report(const FidelityChoice& choice) {
-  ReportTable table{.title = "Numerical settings",
-                    .caption = fmt::format("Chosen from {} runs in {:.0f} s. Errors are estimates, of the largest gap and "
-                                           "boundary offset. {}",
-                                           choice.runs, choice.seconds,
-                                           choice.ranked_against.empty()
-                                               ? std::string()
-                                               : "Ranks: Spearman's correlation with " + choice.ranked_against + "."),
-                    .head = {"fidelity", "setting", "error [%]", "ranks", "a run on one core [s]"},
-                    .rows = {}};
+  ReportTable table{
+      .title = "Numerical settings",
+      .caption = fmt::format("Chosen from {} runs in {:.0f} s. Errors are estimates, of the largest gap and "
+                             "boundary offset. {}",
+                             choice.runs, choice.seconds,
+                             choice.ranked_against.empty()
+                                 ? std::string()
+                                 : "Ranks: Spearman's correlation with " + choice.ranked_against + "."),
+      .head = {"fidelity", "setting", "error [%]", "ranks", "a run on one core [s]"},
+      .rows = {}};
   for (const ChosenFidelity& one : choice.chosen)
     table.rows.push_back({.cells = {one.name, setting_text(one.options), fixed(1e2 * one.error, 1),
                                     fixed(one.ranks, 2), fixed(one.seconds, 1)}});
@@ -271,11 +273,11 @@ ReportTable spread_report(const PlantSpread& spread) {
     const auto text_of = [](const Score& score, double value, int decimals) {
       return score.valid ? fixed(value, decimals) : std::string("failed");
     };
-    table.rows.push_back({.cells = {pair.disturbance.empty() ? "nothing" : pair.disturbance,
-                                    text_of(best, 1e3 * best.max_gap, 2), text_of(best, 1e3 * best.max_boundary_offset, 2),
-                                    text_of(best, best.objective, 2),
-                                    text_of(pair.baseline, pair.baseline.objective, 2)},
-                          .failed = !pair.best.valid});
+    table.rows.push_back(
+        {.cells = {pair.disturbance.empty() ? "nothing" : pair.disturbance,
+                   text_of(best, 1e3 * best.max_gap, 2), text_of(best, 1e3 * best.max_boundary_offset, 2),
+                   text_of(best, best.objective, 2), text_of(pair.baseline, pair.baseline.objective, 2)},
+         .failed = !pair.best.valid});
   }
   return table;
 }

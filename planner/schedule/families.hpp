@@ -82,7 +82,8 @@ class StrokeFamily {
 /// sequences", 2018).
 Eigen::VectorXd even_point(int k, Eigen::Index dimension);
 
-/// Different schedules within the limits of the rig: the baselines first, then waves and free strokes in turn.
+/// Different schedules within the limits of the rig: the baselines first, then waves and free strokes in
+/// turn.
 std::vector<Schedule> spread_schedules(const SequenceFrame& frame, int count);
 
 }  // namespace drapeplan

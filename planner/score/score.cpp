@@ -43,7 +43,8 @@ std::string score_text(const Score& score) {
 std::string force_text(const Score& score, double limit, double lag_tolerance) {
   if (!score.valid || !(score.saturated > 0)) return {};
   return fmt::format(
-      "Some actuator is at its limit of {:g} N for {:.1f} of {:.1f} s, and joints are up to {:.1f} mm behind their "
+      "Some actuator is at its limit of {:g} N for {:.1f} of {:.1f} s, and joints are up to {:.1f} mm behind "
+      "their "
       "commands, of {:g} mm allowed: more force could move the ply further.",
       limit, score.saturated, score.duration, 1e3 * score.max_lag, 1e3 * lag_tolerance);
 }

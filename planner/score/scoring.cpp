@@ -77,8 +77,8 @@ struct OneWay {
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
 };
 
-/// Calls visit(from, to, weight) at places along `line`: each with its nearest place on `other` and the length that it
-/// stands for by the trapezoidal rule.
+/// Calls visit(from, to, weight) at places along `line`: each with its nearest place on `other` and the
+/// length that it stands for by the trapezoidal rule.
 template <class Visit>
 void sample_distances(const Points& line, const Points& other, const Visit& visit) {
   for (size_t k = 1; k < line.size(); ++k) {
@@ -233,10 +233,11 @@ BoundaryOffset boundary_offset(const std::vector<Eigen::Vector3d>& edge,
 double share_beyond(const std::vector<Eigen::Vector3d>& edge, const std::vector<Eigen::Vector3d>& boundary,
                     double limit) {
   double length = 0, beyond = 0;
-  sample_distances(edge, boundary, [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to, double weight) {
-    if ((to - from).norm() > limit) beyond += weight;
-    length += weight;
-  });
+  sample_distances(edge, boundary,
+                   [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to, double weight) {
+                     if ((to - from).norm() > limit) beyond += weight;
+                     length += weight;
+                   });
   return length > 0 ? beyond / length : 0;
 }
 

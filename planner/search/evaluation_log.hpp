@@ -63,8 +63,8 @@ class EvaluationLog {
   /// written.
   EvaluationLog(const std::string& path, std::uint64_t case_hash);
 
-  /// From now on names of fidelities stand for these settings: what was evaluated under the same name with others is
-  /// not known. @param settings  tells them apart; 0: the case says what names stand for.
+  /// From now on names of fidelities stand for these settings: what was evaluated under the same name with
+  /// others is not known. @param settings  tells them apart; 0: the case says what names stand for.
   void use_settings(std::uint64_t settings);
 
   /// The outcome of this candidate (the hash of its schedule, or of design and schedule) at this fidelity:

@@ -72,7 +72,8 @@ void erase_words(nlohmann::json& value) {
   }
 }
 
-/// Tells evaluations apart whose fidelities have the same name and other settings: of a case that chooses them.
+/// Tells evaluations apart whose fidelities have the same name and other settings: of a case that chooses
+/// them.
 std::uint64_t settings_hash(const Case& definition) {
   if (!definition.chooses_fidelities) return 0;
   Fnv1a hash;

@@ -44,8 +44,8 @@ inline const DrapeProblem& planned_problem(const DrapeProblem& given, const Plan
   return result.design ? *result.design->problem : given;
 }
 
-/// The log of a plan that starts now in a folder: a known one if it is resumed; whatever else the folder holds is set
-/// aside. Writes resolved.json.
+/// The log of a plan that starts now in a folder: a known one if it is resumed; whatever else the folder
+/// holds is set aside. Writes resolved.json.
 /// @throws WrongInput if the log that is to be resumed belongs to another case; the folder is then as it was.
 /// @throws NotFinished if a file cannot be written.
 EvaluationLog start_log(const Case& definition, OutputFolder& out, const PlanOptions& options);

@@ -39,7 +39,8 @@ class Chooser {
 
   FidelityChoice choose() {
     begin();
-    // Fibre inertia makes steps long, and some drapes unstable: where one fails, all begin again with half of it.
+    // Fibre inertia makes steps long, and some drapes unstable: where one fails, all begin again with half of
+    // it.
     while (!turn_all() && base_.options.fibre_mass_scaling > 1) {
       base_.options.fibre_mass_scaling = std::max(1.0, std::floor(0.5 * base_.options.fibre_mass_scaling));
       begin();
@@ -56,14 +57,14 @@ class Chooser {
   }
 
  private:
-  /// The baselines where everything is cheap: on a finer mesh where the outline asks for it, slower where a ply is thrown,
-  /// with less fibre inertia where a run fails.
+  /// The baselines where everything is cheap: on a finer mesh where the outline asks for it, slower where a
+  /// ply is thrown, with less fibre inertia where a run fails.
   void begin() {
     while (!(base_ = runner_.run(base_.options, baselines_)).valid()) {
       FemOptions& options = base_.options;
-      const bool ended = std::all_of(base_.outcomes.begin(), base_.outcomes.end(), [](const Outcome& outcome) {
-        return outcome.summary.status == RunStatus::done;
-      });
+      const bool ended =
+          std::all_of(base_.outcomes.begin(), base_.outcomes.end(),
+                      [](const Outcome& outcome) { return outcome.summary.status == RunStatus::done; });
       const bool built = std::any_of(base_.outcomes.begin(), base_.outcomes.end(),
                                      [](const Outcome& outcome) { return outcome.summary.steps > 0; });
       if (!built && options.mesh_size > case_.fidelities.at(kReport).mesh_size) {
@@ -98,8 +99,8 @@ class Chooser {
     return {};
   }
 
-  /// So many runs, each of so many updates and seconds, fit into what the choice may take. With a budget of evaluations
-  /// it may take what its share of them would cost at this setting.
+  /// So many runs, each of so many updates and seconds, fit into what the choice may take. With a budget of
+  /// evaluations it may take what its share of them would cost at this setting.
   [[nodiscard]] bool affords(double updates, double seconds, int runs) const {
     const OptimiseOptions& optimise = case_.optimise;
     if (optimise.evaluations > 0)
@@ -108,8 +109,8 @@ class Chooser {
     return runner_.elapsed() + rounds * seconds <= kChoiceShare * optimise.budget;
   }
 
-  /// Values of a knob from cheap to careful; each costs at least as the one before by the ratio of values, and cells
-  /// by its third power.
+  /// Values of a knob from cheap to careful; each costs at least as the one before by the ratio of values,
+  /// and cells by its third power.
   bool turn(double FemOptions::*knob, std::vector<double> values) {
     const double base = base_.options.*knob;
     if (knob == &FemOptions::time_scaling)
@@ -124,9 +125,8 @@ class Chooser {
         tried.push_back(base_);
         continue;
       }
-      const bool known = std::any_of(tried.begin(), tried.end(), [&](const SettingRuns& p) {
-        return p.options.*knob < base;
-      });
+      const bool known = std::any_of(tried.begin(), tried.end(),
+                                     [&](const SettingRuns& p) { return p.options.*knob < base; });
       if (known) {  // without one that is more careful than the base nothing would be known of the knob
         const double power = knob == &FemOptions::mesh_size ? 3 : 1;
         const SettingRuns& before = tried.back();
@@ -165,12 +165,13 @@ class Chooser {
       levels.push_back(level);
     }
     const auto is_valid = [](const SettingRuns& runs) { return runs.valid(); };
-    const auto careful = std::find_if(tried.rbegin(), tried.rend(), is_valid);  // the last that ran to its end
+    const auto careful =
+        std::find_if(tried.rbegin(), tried.rend(), is_valid);  // the last that ran to its end
     const auto before = std::find_if(careful + 1, tried.rend(), is_valid);
     levels[size_t(tried.rend() - careful - 1)].careful = true;
-    // Rates as they are, the schedule's own clock and no added mass are exact. Where the end is not reached, the last step
-    // is the error. And what comes closer than something finer does so by chance. Of a knob that could not be turned
-    // nothing is known.
+    // Rates as they are, the schedule's own clock and no added mass are exact. Where the end is not reached,
+    // the last step is the error. And what comes closer than something finer does so by chance. Of a knob
+    // that could not be turned nothing is known.
     const bool exact = !knob || (knob != &FemOptions::mesh_size && careful->options.*knob == 1);
     double error = 0, objective_error = 0;
     if (!exact && before == tried.rend()) error = objective_error = kUnknownError;
@@ -180,7 +181,8 @@ class Chooser {
     }
     for (auto runs = careful; runs != tried.rend(); ++runs) {
       if (!runs->valid()) continue;
-      const double own = difference(*runs, *careful, case_.score), objective = objective_difference(*runs, *careful);
+      const double own = difference(*runs, *careful, case_.score),
+                   objective = objective_difference(*runs, *careful);
       error = knob ? std::max(error, own) : own;
       objective_error = knob ? std::max(objective_error, objective) : objective;
       Level& level = levels[size_t(tried.rend() - runs - 1)];
@@ -193,8 +195,11 @@ class Chooser {
 
   /// All combinations, by increasing cost.
   void combine() {
-    combinations_ = {
-        {.options = base_.options, .error = 0, .objective_error = 0, .updates = base_.updates, .seconds = base_.seconds}};
+    combinations_ = {{.options = base_.options,
+                      .error = 0,
+                      .objective_error = 0,
+                      .updates = base_.updates,
+                      .seconds = base_.seconds}};
     for (const std::vector<Level>& levels : knobs_) {
       std::vector<Combination> grown;
       for (const Combination& before : combinations_) {
@@ -203,7 +208,8 @@ class Chooser {
           if (level.knob) next.options.*level.knob = level.options.*level.knob;
           if (!level.knob) next.options.rates = level.options.rates;
           // Curves at rates are steeper: more fibre inertia than in the base makes drapes unstable with them.
-          if (next.options.rates && next.options.fibre_mass_scaling > base_.options.fibre_mass_scaling) continue;
+          if (next.options.rates && next.options.fibre_mass_scaling > base_.options.fibre_mass_scaling)
+            continue;
           next.error += level.error;
           next.objective_error += level.objective_error;
           next.updates *= level.updates / base_.updates;
@@ -219,14 +225,15 @@ class Chooser {
                      [](const Combination& a, const Combination& b) { return a.updates < b.updates; });
   }
 
-  /// Other schedules than the baselines are shorter and bend the ply more: what is wilder than the base may do for
-  /// screening, where it is tried with more of them.
+  /// Other schedules than the baselines are shorter and bend the ply more: what is wilder than the base may
+  /// do for screening, where it is tried with more of them.
   [[nodiscard]] bool calm(const Combination& one) const {
     return one.options.time_scaling <= base_.options.time_scaling &&
            one.options.fibre_mass_scaling <= base_.options.fibre_mass_scaling;
   }
 
-  /// The cheapest combination within the error; else the one with the least error, and of several the finest mesh.
+  /// The cheapest combination within the error; else the one with the least error, and of several the finest
+  /// mesh.
   template <class Allowed>
   [[nodiscard]] std::optional<Combination> cheapest(double error, const Allowed& allowed) const {
     std::optional<Combination> best;
@@ -253,14 +260,17 @@ class Chooser {
     report_updates_ = report.updates;
     if (report.error <= kReportError) return;
     if (report.error >= kUnknownError) {
-      choice_.message = "by how much results at `report` are off could not be measured: runs that would tell fail";
+      choice_.message =
+          "by how much results at `report` are off could not be measured: runs that would tell fail";
       return;
     }
-    choice_.message = fmt::format("results at `report` may be off by {:.1f} %, more than the {:.0f} % that are wanted",
-                                  1e2 * report.error, 1e2 * kReportError);
+    choice_.message =
+        fmt::format("results at `report` may be off by {:.1f} %, more than the {:.0f} % that are wanted",
+                    1e2 * report.error, 1e2 * kReportError);
     if (wanted.error < report.error)
-      choice_.message += fmt::format("; a budget of {:.0f} min would pay for {:.1f} %",
-                                     std::ceil(rounds * wanted.seconds / kReportsShare / 60), 1e2 * wanted.error);
+      choice_.message +=
+          fmt::format("; a budget of {:.0f} min would pay for {:.1f} %",
+                      std::ceil(rounds * wanted.seconds / kReportsShare / 60), 1e2 * wanted.error);
   }
 
   /// A cheap combination that ranks schedules as the finest mesh does that the choice can pay for.
@@ -268,7 +278,8 @@ class Chooser {
     const std::vector<Level>& meshes = knobs_[mesh_levels_];
     const int more = kRanked - int(baselines_.size());
     for (auto mesh = meshes.rbegin(); mesh != meshes.rend() && !careful_; ++mesh) {
-      if (std::isfinite(mesh->error) && mesh->updates > base_.updates && affords(mesh->updates, mesh->seconds, more))
+      if (std::isfinite(mesh->error) && mesh->updates > base_.updates &&
+          affords(mesh->updates, mesh->seconds, more))
         careful_ = runner_.run(mesh->options, spread_schedules(frame_, kRanked));
     }
     if (!careful_) return;
@@ -304,10 +315,11 @@ class Chooser {
     }
   }
 
-  /// Spearman's correlation over the schedules that both could score; what only the careful one could counts as ranked
-  /// wrongly.
+  /// Spearman's correlation over the schedules that both could score; what only the careful one could counts
+  /// as ranked wrongly.
   [[nodiscard]] static double ranks_of(const SettingRuns& cheap, const SettingRuns& careful) {
-    const std::vector<double> cheap_objectives = cheap.objectives(), careful_objectives = careful.objectives();
+    const std::vector<double> cheap_objectives = cheap.objectives(),
+                              careful_objectives = careful.objectives();
     std::vector<double> x, y;
     int failed = 0;
     for (size_t k = 0; k < cheap_objectives.size(); ++k) {

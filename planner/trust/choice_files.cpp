@@ -22,14 +22,16 @@ const char* knob_name(const Level& level) {
 
 std::string choice_table(const FidelityChoice& choice, const OptimiseOptions& optimise, int threads) {
   const bool timed = optimise.evaluations == 0;
-  std::string text = fmt::format("  numerics: chosen from {} runs in {:.0f} s\n    {:<10}{:<40}{:>10}{:>8}{:>10}",
-                                 choice.runs, choice.seconds, "fidelity", "setting", "error [%]", "ranks",
-                                 "run [s]");
+  std::string text =
+      fmt::format("  numerics: chosen from {} runs in {:.0f} s\n    {:<10}{:<40}{:>10}{:>8}{:>10}",
+                  choice.runs, choice.seconds, "fidelity", "setting", "error [%]", "ranks", "run [s]");
   text += timed ? "   runs in the budget\n" : "\n";
   for (const ChosenFidelity& one : choice.chosen) {
     text += fmt::format("    {:<10}{:<40}{:>10}{:>8}{:>10}", one.name, setting_text(one.options),
                         fixed(1e2 * one.error, 1), fixed(one.ranks, 2), fixed(one.seconds, 1));
-    text += timed ? fmt::format("{:>21}\n", std::max(0, int((optimise.budget - choice.seconds) / one.seconds * thread_count(threads)))) : "\n";
+    text += timed ? fmt::format("{:>21}\n", std::max(0, int((optimise.budget - choice.seconds) / one.seconds *
+                                                            thread_count(threads))))
+                  : "\n";
   }
   if (!choice.ranked_against.empty()) text += fmt::format("    (ranks: against {})\n", choice.ranked_against);
   if (!choice.message.empty()) text += "    " + choice.message + "\n";
@@ -55,12 +57,9 @@ nlohmann::json choice_json(const FidelityChoice& choice) {
                       {"ranks", finite(one.ranks)},
                       {"seconds", one.seconds}});
   }
-  return {{"chosen", std::move(chosen)},
-          {"levels", std::move(levels)},
-          {"ranked_against", choice.ranked_against},
-          {"runs", choice.runs},
-          {"seconds", choice.seconds},
-          {"message", choice.message}};
+  return {
+      {"chosen", std::move(chosen)}, {"levels", std::move(levels)}, {"ranked_against", choice.ranked_against},
+      {"runs", choice.runs},         {"seconds", choice.seconds},   {"message", choice.message}};
 }
 
 }  // namespace drapeplan

@@ -20,10 +20,12 @@ void claim_beyond(double error, StagedResult& search) {
   }
   search.beats_baselines = false;
   search.message = fmt::format(
-      "the optimised sequence (candidate \"{}\") is no better than the baselines within the error of {:.1f} %: "
+      "the optimised sequence (candidate \"{}\") is no better than the baselines within the error of {:.1f} "
+      "%: "
       "its objective of {:.4g} is {:.1f} % below the better one's {:.4g}",
       search.best.name, 1e2 * error, best, 1e2 * gain, baseline);
-  if (!search.best.outcome.score.followed) search.message += "; the rig does not follow it within the tolerance of lag";
+  if (!search.best.outcome.score.followed)
+    search.message += "; the rig does not follow it within the tolerance of lag";
 }
 
 }  // namespace drapeplan

@@ -17,13 +17,14 @@ bool SettingRuns::valid() const {
 std::vector<double> SettingRuns::objectives() const {
   std::vector<double> values;
   for (const Outcome& outcome : outcomes)
-    values.push_back(outcome.score.valid ? outcome.score.objective : std::numeric_limits<double>::quiet_NaN());
+    values.push_back(outcome.score.valid ? outcome.score.objective
+                                         : std::numeric_limits<double>::quiet_NaN());
   return values;
 }
 
 std::string setting_text(const FemOptions& options) {
-  return fmt::format("{:.3g} mm cells, time x {:.3g}, step x {:g}{}", 1e3 * options.mesh_size, options.time_scaling,
-                     options.fibre_mass_scaling, options.rates ? ", rates" : "");
+  return fmt::format("{:.3g} mm cells, time x {:.3g}, step x {:g}{}", 1e3 * options.mesh_size,
+                     options.time_scaling, options.fibre_mass_scaling, options.rates ? ", rates" : "");
 }
 
 double difference(const SettingRuns& a, const SettingRuns& b, const ScoreOptions& score) {
@@ -50,9 +51,13 @@ double objective_difference(const SettingRuns& a, const SettingRuns& b) {
   return largest;
 }
 
-SettingRunner::SettingRunner(const Case& definition, EvaluationLog& log, int threads, std::function<bool()> stop,
-               std::function<void(const Progress&)> progress)
-    : case_(definition), log_(log), threads_(threads), stop_(std::move(stop)), progress_(std::move(progress)) {}
+SettingRunner::SettingRunner(const Case& definition, EvaluationLog& log, int threads,
+                             std::function<bool()> stop, std::function<void(const Progress&)> progress)
+    : case_(definition),
+      log_(log),
+      threads_(threads),
+      stop_(std::move(stop)),
+      progress_(std::move(progress)) {}
 
 SettingRuns SettingRunner::run(const FemOptions& options, const std::vector<Schedule>& schedules) {
   const std::string name = setting_text(options);
@@ -68,9 +73,10 @@ SettingRuns SettingRunner::run(const FemOptions& options, const std::vector<Sche
   for (size_t k = 0; k < schedules.size(); ++k) {
     const Outcome& outcome = runs.outcomes[k];
     // A case that cannot be built at this setting has no model to ask.
-    const double updates = outcome.summary.steps > 0
-                               ? double(problem.model(name).scene().mesh.element_count()) * double(outcome.summary.steps)
-                               : 0;
+    const double updates =
+        outcome.summary.steps > 0
+            ? double(problem.model(name).scene().mesh.element_count()) * double(outcome.summary.steps)
+            : 0;
     runs.updates += updates / count;
     runs.seconds += outcome.wall_seconds / count;
     elapsed_ = std::max(elapsed_, outcome.elapsed);

@@ -30,9 +30,9 @@ struct SettingRuns {
 /// "20.2 mm cells, time x 8, step x 6": what a setting changes of the defaults; names it in the log.
 std::string setting_text(const FemOptions& options);
 
-/// Largest relative difference of the runs at two settings in the leading parts of the score, over their common
-/// schedules. Lengths below the case's targets count as these: a tenth of a gap that nobody sees is no error of 10 %.
-/// Infinite if a run failed.
+/// Largest relative difference of the runs at two settings in the leading parts of the score, over their
+/// common schedules. Lengths below the case's targets count as these: a tenth of a gap that nobody sees is no
+/// error of 10 %. Infinite if a run failed.
 double difference(const SettingRuns& a, const SettingRuns& b, const ScoreOptions& score);
 
 /// The same of the objective, relative to the second one's.
@@ -44,7 +44,7 @@ class SettingRunner {
   /// @param definition  with grippers, mold and mapping.  @param log  outlives it.
   /// @param stop  asked before each run; may be empty.
   SettingRunner(const Case& definition, EvaluationLog& log, int threads, std::function<bool()> stop,
-         std::function<void(const Progress&)> progress);
+                std::function<void(const Progress&)> progress);
 
   /// @throws Interrupted once `stop` says so.
   SettingRuns run(const FemOptions& options, const std::vector<Schedule>& schedules);

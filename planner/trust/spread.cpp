@@ -85,7 +85,8 @@ std::vector<Disturbance> disturbances(const Case& definition) {
             move(schedule, [&](Eigen::Vector2d& xy) { xy[axis] += sign * kPlacementSpread; });
           });
     }
-    add(fmt::format("rig turned by {} {:.0f} deg", mark, kAngleSpreadDeg), [sign](Case& plant, Schedule& schedule) {
+    add(fmt::format("rig turned by {} {:.0f} deg", mark, kAngleSpreadDeg), [sign](Case& plant,
+                                                                                  Schedule& schedule) {
       const double turn = sign * kAngleSpreadDeg * std::numbers::pi / 180;
       plant.ply.angle += turn;
       const Eigen::Vector2d centre = plant.ply.position;
@@ -103,17 +104,21 @@ std::vector<Disturbance> disturbances(const Case& definition) {
 }
 
 int PlantSpread::better() const {
-  return int(std::count_if(pairs.begin() + 1, pairs.end(), [](const DisturbedPair& pair) { return pair.better(); }));
+  return int(
+      std::count_if(pairs.begin() + 1, pairs.end(), [](const DisturbedPair& pair) { return pair.better(); }));
 }
 
-std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule& best, const Schedule& baseline,
-                                     const SpreadOptions& options, EvaluationLog& log) {
+std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule& best,
+                                     const Schedule& baseline, const SpreadOptions& options,
+                                     EvaluationLog& log) {
   const std::vector<Disturbance> list = disturbances(problem.definition());
   // Both schedules in each plant, one after the other: the undisturbed pair tells what all will take.
   const auto evaluate = [&](const std::string& fidelity, size_t from, size_t to) {
     std::vector<Outcome> outcomes(to - from);
     std::vector<char> finished(outcomes.size(), 0);
-    const auto schedule_of = [&](size_t k) -> const Schedule& { return (from + k) % 2 == 0 ? best : baseline; };
+    const auto schedule_of = [&](size_t k) -> const Schedule& {
+      return (from + k) % 2 == 0 ? best : baseline;
+    };
     // In the log a plant is a fidelity of its own: its objectives are not those of the case.
     const auto name_of = [&](size_t k) {
       const std::string& plant = list[(from + k) / 2].name;
@@ -145,7 +150,8 @@ std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule
   const size_t runs = 2 * list.size();
   PlantSpread spread;
   std::vector<Outcome> outcomes;
-  for (auto name = options.fidelities.rbegin(); name != options.fidelities.rend() && spread.fidelity.empty(); ++name) {
+  for (auto name = options.fidelities.rbegin(); name != options.fidelities.rend() && spread.fidelity.empty();
+       ++name) {
     outcomes = evaluate(*name, 0, 2);
     const double each = 0.5 * (outcomes[0].wall_seconds + outcomes[1].wall_seconds);
     if (options.seconds <= 0 || double(runs) * each <= options.seconds * thread_count(options.threads))
@@ -160,9 +166,9 @@ std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule
 }
 
 std::string spread_text(const PlantSpread& spread) {
-  const bool is_baseline = std::all_of(spread.pairs.begin(), spread.pairs.end(), [](const DisturbedPair& pair) {
-    return pair.best.objective == pair.baseline.objective;
-  });
+  const bool is_baseline =
+      std::all_of(spread.pairs.begin(), spread.pairs.end(),
+                  [](const DisturbedPair& pair) { return pair.best.objective == pair.baseline.objective; });
   std::string worst, failed;
   int failures = 0;
   double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -176,9 +182,11 @@ std::string spread_text(const PlantSpread& spread) {
     least = std::min(least, pair.best.objective);
     if (pair.best.objective > most) most = pair.best.objective, worst = name;
   }
-  if (failures == int(spread.pairs.size())) return "it fails in every plant that differs, the last with " + failed;
+  if (failures == int(spread.pairs.size()))
+    return "it fails in every plant that differs, the last with " + failed;
   std::string text = fmt::format(
-      "in {} plants that differ (friction, placement, shear, joints, times; at `{}`) its objective is {:.2f} to {:.2f}, "
+      "in {} plants that differ (friction, placement, shear, joints, times; at `{}`) its objective is {:.2f} "
+      "to {:.2f}, "
       "worst with {}",
       spread.plants(), spread.fidelity, least, most, worst);
   if (failures > 0) text += fmt::format("; it fails in {}, the last with {}", failures, failed);

@@ -13,8 +13,9 @@
 
 namespace drapeplan {
 
-/// What a plant cannot hold better, one at a time: of the friction and of the level of the ply's shear stress as
-/// shares, of where and how the rig puts the ply, of the joints above it, of the clock of the schedule as a share.
+/// What a plant cannot hold better, one at a time: of the friction and of the level of the ply's shear stress
+/// as shares, of where and how the rig puts the ply, of the joints above it, of the clock of the schedule as
+/// a share.
 inline constexpr double kFrictionSpread = 0.2, kShearSpread = 0.5, kTimingSpread = 0.05;
 inline constexpr double kPlacementSpread = 0.002, kJointSpread = 0.0005;  // [m]
 inline constexpr double kAngleSpreadDeg = 1;
@@ -32,7 +33,9 @@ std::vector<Disturbance> disturbances(const Case& definition);
 struct DisturbedPair {
   std::string disturbance;
   Score best, baseline;
-  [[nodiscard]] bool better() const { return best.valid && (!baseline.valid || best.objective < baseline.objective); }
+  [[nodiscard]] bool better() const {
+    return best.valid && (!baseline.valid || best.objective < baseline.objective);
+  }
 };
 
 struct PlantSpread {
@@ -51,11 +54,12 @@ struct SpreadOptions {
   std::function<bool()> stop = {};
 };
 
-/// Runs both schedules, as they are commanded, in every disturbed plant, through the log: at the finest fidelity that
-/// the time is enough for; nothing where it is enough for none.
+/// Runs both schedules, as they are commanded, in every disturbed plant, through the log: at the finest
+/// fidelity that the time is enough for; nothing where it is enough for none.
 /// @throws Interrupted once `stop` says so; what has run is in the log.
-std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule& best, const Schedule& baseline,
-                                     const SpreadOptions& options, EvaluationLog& log);
+std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule& best,
+                                     const Schedule& baseline, const SpreadOptions& options,
+                                     EvaluationLog& log);
 
 /// "in 14 plants that differ (...) its objective is 21.10 to 23.00, worst with ...".
 std::string spread_text(const PlantSpread& spread);

@@ -80,9 +80,10 @@ TEST(ForceText, SpeaksOfTheLimitOnlyWhereItWasReached) {
   score.saturated = 8;
   score.duration = 14.2;
   score.max_lag = 0.0083;
-  EXPECT_EQ(force_text(score, 50, 0.01),
-            "Some actuator is at its limit of 50 N for 8.0 of 14.2 s, and joints are up to 8.3 mm behind their "
-            "commands, of 10 mm allowed: more force could move the ply further.");
+  EXPECT_EQ(
+      force_text(score, 50, 0.01),
+      "Some actuator is at its limit of 50 N for 8.0 of 14.2 s, and joints are up to 8.3 mm behind their "
+      "commands, of 10 mm allowed: more force could move the ply further.");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// A case that names no numerical settings: where they begin, what is chosen, and that a plan which goes on chooses the
-// same again.
+// A case that names no numerical settings: where they begin, what is chosen, and that a plan which goes on
+// chooses the same again.
 #include "planner/trust/choice.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,8 @@ fs::path scratch(const std::string& name) {
 
 /// The quick case without its numerical settings, with a small budget.
 Case bare_case(const std::vector<std::string>& overrides = {}) {
-  nlohmann::json file = nlohmann::json::parse(std::ifstream(DRAPEPLAN_SOURCE_DIR "/cases/flexdraper-quick.json"));
+  nlohmann::json file =
+      nlohmann::json::parse(std::ifstream(DRAPEPLAN_SOURCE_DIR "/cases/flexdraper-quick.json"));
   file.erase("fem");
   file.erase("fidelities");
   file["material"] = DRAPEPLAN_SOURCE_DIR "/cases/materials/bmi-4hs.json";
@@ -59,10 +60,11 @@ TEST(Fidelities, FollowFromSizesWhereAFileNamesNone) {
   EXPECT_NEAR(bare.fidelities.at("report").mesh_size, 6.73e-3, 1e-9);
   // The wave's strokes of 3.5 s in 2.5 times what the ply with 20 times its mass falls through 30 mm in.
   EXPECT_NEAR(bare.fidelities.at("report").time_scaling, 3.5 / (2.5 * std::sqrt(2 * 0.03 * 20 / 9.81)), 0.01);
-  EXPECT_NEAR(bare_case({"mold.extent=[[\"0 mm\", \"450 mm\"], [\"0 mm\", \"450 mm\"]]", "grippers.pad_radius=2 mm"})
-                  .fidelities.at("screen")
-                  .mesh_size,
-              1.01 * 0.1 / 8, 1e-4)
+  EXPECT_NEAR(
+      bare_case({"mold.extent=[[\"0 mm\", \"450 mm\"], [\"0 mm\", \"450 mm\"]]", "grippers.pad_radius=2 mm"})
+          .fidelities.at("screen")
+          .mesh_size,
+      1.01 * 0.1 / 8, 1e-4)
       << "pads that are much smaller than the ply between them give no size to cells";
   EXPECT_FALSE(bare_case({"fem.mesh_size=20 mm"}).chooses_fidelities);
   EXPECT_FALSE(changed_case(bare, {}).definition.chooses_fidelities) << "a resolved case names its settings";
@@ -73,7 +75,8 @@ TEST(Difference, IsRelativeToTheLargerOfAFigureAndItsTarget) {
   EXPECT_NEAR(difference(runs_of({0.011}), runs_of({0.010}), score), 0.1, 1e-12);
   EXPECT_NEAR(difference(runs_of({0.0003}), runs_of({0.0002}), score), 0.1, 1e-12) << "below the target";
   EXPECT_NEAR(difference(runs_of({0.010}, 0.0025), runs_of({0.010}, 0.002), score), 0.25, 1e-12);
-  EXPECT_NEAR(difference(runs_of({0.010, 0.010}), runs_of({0.010, 0.008}), score), 0.25, 1e-12) << "the worst schedule";
+  EXPECT_NEAR(difference(runs_of({0.010, 0.010}), runs_of({0.010, 0.008}), score), 0.25, 1e-12)
+      << "the worst schedule";
   EXPECT_TRUE(std::isinf(difference(runs_of({0}), runs_of({0.01}), score))) << "a failed run";
 }
 
@@ -115,7 +118,8 @@ TEST(Choice, PlansGoOnWithIt) {
   coarse.time_scaling = 30;
   coarse.rates = false;
   bare.fidelities = {{kReport, coarse}};
-  EXPECT_EQ(case_hash(bare), hash) << "the log of a case that chooses its settings is known whatever it chose";
+  EXPECT_EQ(case_hash(bare), hash)
+      << "the log of a case that chooses its settings is known whatever it chose";
   plan(DrapeProblem(bare), log, {.threads = 1});
   const int evaluations = log.size();
   plan(DrapeProblem(bare), log, {.threads = 1});
