@@ -241,6 +241,12 @@ void write_frames(const std::filesystem::path& folder, const std::string& name, 
 
 namespace {
 
+/// A clause, as "the optimised sequence ...", as the beginning of a sentence.
+std::string capitalised(std::string clause) {
+  if (!clause.empty()) clause.front() = char(std::toupper(static_cast<unsigned char>(clause.front())));
+  return clause;
+}
+
 /// The numerical settings that a plan chose, and what is known of them.
 ReportTable choice_report(const FidelityChoice& choice) {
   ReportTable table{
@@ -261,10 +267,8 @@ ReportTable choice_report(const FidelityChoice& choice) {
 
 /// Both schedules in plants that differ from the case.
 ReportTable spread_report(const PlantSpread& spread) {
-  std::string text = spread_text(spread) + ".";
-  text.front() = char(std::toupper(static_cast<unsigned char>(text.front())));
   ReportTable table{.title = "In a plant that differs",
-                    .caption = text,
+                    .caption = capitalised(spread_text(spread)) + ".",
                     .head = {"differs by", "largest gap [mm]", "largest boundary offset [mm]", "objective",
                              "objective of the baseline"},
                     .rows = {}};
@@ -290,9 +294,7 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   PlanReport report;
   report.title = problem.definition().name;
   report.description = problem.definition().description;
-  std::string compared = search.message;  // a clause: "the optimised sequence ..."
-  if (!compared.empty()) compared.front() = char(std::toupper(static_cast<unsigned char>(compared.front())));
-  report.verdict = fmt::format("{} {}.", verdict_text(problem, result), compared);
+  report.verdict = fmt::format("{} {}.", verdict_text(problem, result), capitalised(search.message));
   report.reach = explain_reach(problem.reach_problem(), problem.reach()) + " " + problem.ply_floor().meaning;
   if (const std::string force = best_force_text(problem, result); !force.empty()) report.reach += " " + force;
   report.rows = rows_of(problem, result);

@@ -9,18 +9,13 @@
 #include <numbers>
 
 #include "planner/base/parallel.hpp"
+#include "planner/case/fields.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/search/batch_evaluate.hpp"
 #include "planner/search/interrupted.hpp"
 
 namespace drapeplan {
 namespace {
-
-void scale(StressTable& table, double factor) {
-  for (Curve& curve : table.curves) {
-    for (double& stress : curve.stress) stress *= factor;
-  }
-}
 
 /// All times of the schedule.
 void stretch(Schedule& schedule, double factor) {
@@ -93,7 +88,9 @@ std::vector<Disturbance> disturbances(const Case& definition) {
       move(schedule, [&](Eigen::Vector2d& xy) { xy = centre + Eigen::Rotation2Dd(turn) * (xy - centre); });
     });
     add(fmt::format("shear stress {} {:.0f} %", mark, 1e2 * kShearSpread),
-        [sign](Case& plant, Schedule&) { scale(plant.material.shear, 1 + sign * kShearSpread); });
+        [sign](Case& plant, Schedule&) {
+          for (Curve& curve : plant.material.shear.curves) curve = scaled(curve, 1 + sign * kShearSpread);
+        });
     add(fmt::format("joints {} {:.1f} mm", mark, 1e3 * kJointSpread), [sign](Case& plant, Schedule&) {
       plant.grippers->joint_offset = std::max(0.0, plant.grippers->joint_offset + sign * kJointSpread);
     });
