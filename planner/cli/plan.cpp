@@ -12,8 +12,6 @@
 #include "planner/base/text.hpp"
 #include "planner/cli/cli.hpp"
 #include "planner/cli/process.hpp"
-#include "planner/drape/acceptance.hpp"
-#include "planner/drape/result_fields.hpp"
 #include "planner/drape/run_checks.hpp"
 #include "planner/report/run_files.hpp"
 #include "planner/search/finalists.hpp"
@@ -56,49 +54,6 @@ class ProgressLine {
   std::string stage_;
 };
 
-json history_json(const StagedResult& search) {
-  json list = json::array();
-  for (const HistoryEntry& entry : search.history) {
-    list.push_back({{"evaluation", entry.number},
-                    {"stage", entry.stage},
-                    {"fidelity", entry.fidelity},
-                    {"objective", finite(entry.objective)},
-                    {"best_so_far", finite(entry.best_so_far)}});
-  }
-  return list;
-}
-
-json drape_json(const Drape& drape) {
-  json out = summary_json(drape.run.summary);
-  add_scores(drape.score, drape.other, out);
-  return out;
-}
-
-json baselines_json(const PlanResult& result) {
-  json uniform, wave;
-  add_scores(result.uniform.score, result.uniform.other, uniform);
-  add_scores(result.wave.score, result.wave.other, wave);
-  json baselines{{"uniform", uniform["score"]}, {"wave", wave["score"]}};
-  if (result.uniform.other)
-    baselines["pressed"] = {{"uniform", uniform["score_pressed"]}, {"wave", wave["score_pressed"]}};
-  return baselines;
-}
-
-/// What was changed of the case, and the objective of the best schedule without each change.
-json design_json(const PlanResult& result) {
-  json changes = json::array();
-  for (const DesignChange& change : result.design->changes) {
-    changes.push_back({{"path", change.path},
-                       {"from", change.before},
-                       {"to", change.after},
-                       {"objective_without", finite(change.without.score.objective)}});
-  }
-  return {{"changes", std::move(changes)},
-          {"case", kDesignFile},
-          {"evaluations", result.design->evaluations},
-          {"given_uniform", score_json(result.given)}};
-}
-
 std::string design_text(const PlanResult& result) {
   std::string text =
       fmt::format("\nthe case as it was given, uniform: objective {:.2f}\n", result.given.objective);
@@ -110,60 +65,6 @@ std::string design_text(const PlanResult& result) {
   }
   text.pop_back();
   return text;
-}
-
-/// The front of gap, boundary offset and duration, of all that was evaluated at the reporting fidelity.
-json candidates_json(const StagedResult& search) {
-  json list = json::array();
-  for (const Candidate* candidate : unbeaten(search.finalists)) {
-    const Score& score = candidate->outcome.score;
-    list.push_back({{"candidate", candidate->name},
-                    {"max_gap", score.max_gap},
-                    {"max_boundary_offset", score.max_boundary_offset},
-                    {"duration", score.duration},
-                    {"objective", score.objective}});
-  }
-  return list;
-}
-
-json plan_json(const DrapeProblem& problem, const PlanResult& result) {
-  const StagedResult& search = result.search;
-  json reach{{"floor_max", finite(problem.reach().floor_max)},
-             {"floor_rms", finite(problem.reach().floor_rms)},
-             {"link_violation", finite(problem.reach().link_violation)},
-             {"status", problem.reach().status},
-             {"meaning", explain_reach(problem.reach_problem(), problem.reach())}};
-  json best{{"candidate", search.best.name}};
-  add_scores(result.best.score, result.best.other, best);
-  best["warnings"] = drape_warnings(problem, result.best, search.best_fidelity);
-  best["fidelity"] = search.best_fidelity;
-  best["acceptance"] = acceptance_json(acceptance_of(problem, result.best, search.best_fidelity));
-  if (result.best.score.valid) best["schedule"] = "schedule.json";
-  if (result.design) best["design"] = design_json(result);
-  return {{"case", problem.definition().name},
-          {"terms", problem.model(kReport).term_names()},
-          {"reach", reach},
-          {"front", front_json(problem.ply_floor().front)},
-          {"floor", problem.ply_floor().meaning},
-          {"map",
-           {{"max_shear_deg", problem.mapping().max_shear_deg},
-            {"mean_shear_deg", problem.mapping().mean_shear_deg}}},
-          {"baselines", baselines_json(result)},
-          {"best", best},
-          {"runs",
-           {{"uniform", drape_json(result.uniform)},
-            {"wave", drape_json(result.wave)},
-            {"best", drape_json(result.best)}}},
-          {"unbeaten", candidates_json(search)},
-          {"interrupted", search.interrupted},
-          {"beats_baselines", search.beats_baselines},
-          {"message", search.message},
-          {"verdict", verdict_text(problem, result)},
-          {"force", best_force_text(problem, result)},
-          {"evaluations", search.evaluations},
-          {"failed_evaluations", search.failed_evaluations},
-          {"wall_seconds", result.wall_seconds},
-          {"history", history_json(search)}};
 }
 
 struct PlannedCase {
@@ -184,9 +85,13 @@ void print_start(const DrapeProblem& problem) {
 }
 
 std::string result_text(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,
-                        const std::filesystem::path& folder) {
-  std::string text = fmt::format("\n{}\n\n{}\n{}\n", verdict_text(problem, result),
-                                 comparison_table(problem, result), result.search.message);
+                        const Diagnosis& diagnosis, const std::filesystem::path& folder) {
+  std::string text = fmt::format("\n{}\n", verdict_text(problem, result));
+  const RigOptions& rig = *problem.definition().grippers;
+  for (const std::string& why : {diagnosis_text(diagnosis, rig), remedy_text(diagnosis, rig)}) {
+    if (!why.empty()) text += why + "\n";
+  }
+  text += fmt::format("\n{}\n{}\n", comparison_table(problem, result), result.search.message);
   if (const std::string force = best_force_text(problem, result); !force.empty()) text += force + "\n";
   if (trust.spread) text += spread_text(*trust.spread) + "\n";
   if (!trust.spread && !result.search.interrupted && result.best.score.valid)
@@ -269,15 +174,16 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
   }
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   print_warnings(drape_warnings(planned, result.best, result.search.best_fidelity), options.common);
+  const Diagnosis diagnosis = diagnosis_of(
+      planned, result.best, result.search.best_fidelity,
+      result.search.learned ? stroke_effects(*result.search.learned) : std::vector<StrokeEffect>{});
   if (result.best.score.valid)
-    write_plan(out.path(), planned, result, trust);  // no schedule for a robot from failed runs
-  json document = plan_json(planned, result);
+    write_plan(out.path(), planned, result, trust, diagnosis);  // no schedule for a robot from failed runs
+  json document = plan_json(planned, result, trust, diagnosis);
   document["interrupted"] = interrupted;
-  if (trust.choice) document["numerics"] = choice_json(*trust.choice);
-  if (trust.spread) document["robust"] = spread_json(*trust.spread);
   write_text(out.path() / "result.json", document_text(document));
   return {.result = std::move(document),
-          .text = result_text(planned, result, trust, out.path()),
+          .text = result_text(planned, result, trust, diagnosis, out.path()),
           .valid = result.best.score.valid,
           .reason = result.best.score.reason,
           .interrupted = interrupted};

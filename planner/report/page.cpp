@@ -100,9 +100,9 @@ std::string score_table(const std::vector<ReportRow>& rows) {
          "</caption>\n</table></div>\n";
 }
 
-std::string text_table(const ReportTable& table) {
-  std::string text = fmt::format("<h2>{}</h2>\n<div class=\"wide\"><table class=\"texts\">\n<thead><tr>",
-                                 escape_markup(table.title));
+/// @param title  as markup.
+std::string text_table(const ReportTable& table, const std::string& title) {
+  std::string text = fmt::format("{}\n<div class=\"wide\"><table class=\"texts\">\n<thead><tr>", title);
   for (const std::string& head : table.head) text += fmt::format("<th>{}</th>", escape_markup(head));
   text += "</tr></thead>\n<tbody>\n";
   for (const ReportTable::Row& row : table.rows) {
@@ -146,6 +146,23 @@ std::string file_list(const std::vector<std::pair<std::string, std::string>>& fi
   return text + "</table>\n";
 }
 
+std::string heading(const std::string& title) {
+  return fmt::format("<h2>{}</h2>\n", escape_markup(title));
+}
+
+std::string figure_text(const ReportFigure& figure) {
+  return fmt::format("<figure>\n<div class=\"wide\">{}</div>\n<figcaption>{}</figcaption>\n</figure>\n",
+                     figure.svg, escape_markup(figure.caption));
+}
+
+std::string reasons_text(const ReportReasons& reasons) {
+  std::string text =
+      heading("Why, and what would change it") + paragraph(reasons.text) + paragraph(reasons.remedy);
+  if (!reasons.figure.svg.empty()) text += figure_text(reasons.figure);
+  if (!reasons.folds.rows.empty()) text += text_table(reasons.folds, "");
+  return text;
+}
+
 /// Words on lines of at most `width` characters, as far as no word is longer.
 std::vector<std::string> wrapped(const std::string& words, size_t width) {
   std::vector<std::string> lines;
@@ -168,14 +185,12 @@ std::string html_report(const PlanReport& report) {
       "<title>{0} \u2013 draping plan</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
       escape_markup(report.title), kStyle);
   page += paragraph(report.description, "soft") + paragraph(report.verdict, "lead");
-  if (!report.reach.empty()) page += "<h2>What the rig can reach</h2>\n" + paragraph(report.reach);
+  if (report.reasons) page += reasons_text(*report.reasons);
+  if (!report.reach.empty()) page += heading("What the rig can reach") + paragraph(report.reach);
   page += score_table(report.rows);
-  for (const ReportTable& table : report.tables) page += text_table(table);
+  for (const ReportTable& table : report.tables) page += text_table(table, heading(table.title));
   if (!report.figures.empty()) page += "<h2>Pictures</h2>\n";
-  for (const ReportFigure& figure : report.figures) {
-    page += fmt::format("<figure>\n<div class=\"wide\">{}</div>\n<figcaption>{}</figcaption>\n</figure>\n",
-                        figure.svg, escape_markup(figure.caption));
-  }
+  for (const ReportFigure& figure : report.figures) page += figure_text(figure);
   if (!report.notes.empty()) {
     page += "<h2>To keep in mind</h2>\n<ul>\n";
     for (const std::string& note : report.notes) page += fmt::format("<li>{}</li>\n", escape_markup(note));

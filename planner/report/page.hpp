@@ -1,6 +1,7 @@
 // The report of a plan run as one self-contained HTML page, and its scores as a table for the console.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,11 +37,19 @@ struct ReportTable {
   std::vector<Row> rows;
 };
 
+/// Why a drape is as it is, and what would change it.
+struct ReportReasons {
+  std::string text, remedy;
+  ReportFigure figure;
+  ReportTable folds;
+};
+
 /// All texts are plain text; they are escaped when written. What is empty is left out.
 struct PlanReport {
   std::string title;            ///< name of the case
   std::string description;      ///< what is draped, one or two sentences
   std::string verdict;          ///< good enough or not, and what came out
+  std::optional<ReportReasons> reasons;  ///< beside a drape that is not accepted
   std::string reach;            ///< what the rig can reach at all, one or two sentences
   std::vector<ReportRow> rows;  ///< baselines first, the optimum last
   std::vector<ReportTable> tables;

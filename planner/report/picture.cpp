@@ -44,6 +44,8 @@ struct View {
   }
 };
 
+constexpr const char* kEmphasis = "#8e44ad";  // no colour of the gaps, nor of the boundary
+
 double finite_or_zero(double value) {
   return std::isfinite(value) ? value : 0.0;
 }
@@ -177,6 +179,15 @@ std::string millimetres(double metres) {
   return fixed(1000 * metres, 1) + "\u2009mm";
 }
 
+/// Numbers of folds, in discs.
+void draw_folds(Svg& svg, const std::vector<Vector2d>& folds) {
+  for (size_t k = 0; k < folds.size(); ++k) {
+    svg.circle(folds[k], 9, {.fill = "#ffffff", .stroke = ink::kText, .width = 1.4});
+    svg.text(folds[k] + Vector2d(0, 4.5), fmt::to_string(k + 1),
+             {.size = 12, .anchor = Svg::Anchor::middle, .bold = true});
+  }
+}
+
 /// The marks of the largest values and their numbers; returns the lines to print below the panel.
 std::vector<std::string> draw_marks(Svg& svg, const DrapePanel& panel, const View& view) {
   std::vector<std::string> lines;
@@ -193,7 +204,7 @@ std::vector<std::string> draw_marks(Svg& svg, const DrapePanel& panel, const Vie
   if (largest != panel.gap.end()) {
     const Vector3d& place = panel.position[size_t(largest - panel.gap.begin())];
     lines.push_back("largest gap  " + millimetres(*largest));
-    if (place.allFinite() && finite_or_zero(*largest) > 0) {
+    if (place.allFinite() && finite_or_zero(*largest) > 0 && panel.folds.empty()) {
       draw_cross(svg, view.pixel(place));
       draw_label(svg, view, view.pixel(place), millimetres(*largest), taken);
     }
@@ -245,11 +256,16 @@ void draw_panel(Svg& svg, const DrapePanel& panel, const Vector2d& corner, const
   for (const int node : panel.mesh.outline) outline.push_back(panel.position[size_t(node)]);
   if (!outline.empty()) outline.push_back(outline.front());
   svg.polyline(pixels(view, outline), {.stroke = ink::kText, .width = 1.2});
-  for (const Vector2d& pad : pixels(view, panel.pads)) {
-    svg.circle(pad, panel.pad_radius * view.scale, {.stroke = ink::kText, .width = 0.8, .opacity = 0.55});
+  const std::vector<Vector2d> pads = pixels(view, panel.pads);
+  for (size_t g = 0; g < pads.size(); ++g) {
+    const double radius = panel.pad_radius * view.scale;
+    if (g < panel.weights.size())
+      svg.circle(pads[g], radius, {.fill = kEmphasis, .opacity = std::clamp(panel.weights[g], 0.0, 1.0)});
+    svg.circle(pads[g], radius, {.stroke = ink::kText, .width = 0.8, .opacity = 0.55});
   }
   draw_boundary(svg, pixels(view, panel.boundary));
   const std::vector<std::string> lines = draw_marks(svg, panel, view);
+  draw_folds(svg, pixels(view, panel.folds));
   svg.close_window();
   draw_ticks(svg, corner, view, mold, first);
   double y = corner.y() + size.y() + 42;
@@ -272,7 +288,10 @@ void draw_legend(Svg& svg, Vector2d at, double right, const std::vector<DrapePan
   if (any([](const DrapePanel& p) { return p.boundary.size() > 1; }))
     entry("prescribed boundary", 164, [&] { draw_boundary(svg, {at, at + Vector2d(24, 0)}); });
   entry("ply edge", 98, [&] { svg.line(at, at + Vector2d(24, 0), {.stroke = ink::kText, .width = 1.2}); });
-  entry("largest gap", 116, [&] { draw_cross(svg, at + Vector2d(16, 0)); });
+  if (any([](const DrapePanel& p) { return p.folds.empty(); }))
+    entry("largest gap", 116, [&] { draw_cross(svg, at + Vector2d(16, 0)); });
+  if (any([](const DrapePanel& p) { return !p.folds.empty(); }))
+    entry("folds", 84, [&] { draw_folds(svg, {at + Vector2d(14, 0)}); });
   if (any([](const DrapePanel& p) { return p.largest_offset.has_value(); })) {
     entry("largest boundary offset", 178,
           [&] { draw_measure(svg, at + Vector2d(4, 0), at + Vector2d(22, 0)); });
@@ -281,6 +300,10 @@ void draw_legend(Svg& svg, Vector2d at, double right, const std::vector<DrapePan
     entry("gripper pad", 100, [&] {
       svg.circle(at + Vector2d(14, 0), 8, {.stroke = ink::kText, .width = 0.8, .opacity = 0.55});
     });
+  }
+  if (any([](const DrapePanel& p) { return !p.weights.empty(); })) {
+    entry("stroke that matters", 150,
+          [&] { svg.circle(at + Vector2d(14, 0), 8, {.fill = kEmphasis, .opacity = 0.8}); });
   }
 }
 

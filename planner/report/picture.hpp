@@ -24,6 +24,9 @@ struct DrapePanel {
   double pad_radius = 0;                  ///< [m]
   /// Where the edge is farthest from the boundary: point of the edge, point of the boundary [m].
   std::optional<std::array<Eigen::Vector3d, 2>> largest_offset;
+  std::vector<Eigen::Vector3d> folds = {};  ///< marked with their numbers, from 1 [m]
+  /// How much each gripper matters, 0 to 1: its pad is filled so strongly; empty: none is.
+  std::vector<double> weights = {};
 };
 
 /// SVG of the panels side by side with one colour scale from 0 to the largest gap of all panels [mm]: filled

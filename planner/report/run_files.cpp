@@ -286,9 +286,51 @@ ReportTable spread_report(const PlantSpread& spread) {
   return table;
 }
 
+ReportTable folds_report(const Diagnosis& diagnosis, const RigOptions& rig) {
+  ReportTable table{
+      .title = "Folds",
+      .caption =
+          "The highest places, half a spacing of the rig apart at least. Slack is by how much the ply is "
+          "longer than the mold below the fold, along the fibre; below zero it is a taut chord.",
+      .head = {"fold", "kind", "height [mm]", "at u, v [mm]", "along", "slack [mm]", "grippers",
+               "stands since [s]"},
+      .rows = {}};
+  for (const Fold& fold : diagnosis.folds) {
+    std::vector<std::string> names;
+    for (const int g : fold.grippers) names.push_back(rig.name(g));
+    table.rows.push_back(
+        {.cells = {fmt::to_string(table.rows.size() + 1), name_of(fold.kind), fixed(1e3 * fold.height, 2),
+                   fmt::format("{:.0f}, {:.0f}", 1e3 * fold.at.x(), 1e3 * fold.at.y()),
+                   fold.fibre == Fibre::warp ? "warp" : "weft", fixed(1e3 * fold.slack, 2),
+                   fmt::format("{}", fmt::join(names, ", ")), fixed(fold.since, 1)}});
+  }
+  return table;
+}
+
+/// One picture: the best drape with its folds, and the grippers whose strokes matter.
+ReportReasons reasons_of(const DrapeProblem& problem, const PlanResult& result, const Diagnosis& diagnosis) {
+  const RigOptions& rig = *problem.definition().grippers;
+  DrapePanel panel = drape_panel(problem, result.best, result.search.best_fidelity, "why");
+  panel.subtitle.clear();
+  for (const Fold& fold : diagnosis.folds) panel.folds.push_back(panel.position[size_t(fold.node)]);
+  if (!diagnosis.effects.empty()) {
+    panel.weights.assign(size_t(rig.count()), 0.0);
+    for (const StrokeEffect& effect : diagnosis.effects) {
+      double& weight = panel.weights[size_t(effect.gripper)];
+      weight = std::max(weight, effect.size() / diagnosis.effects.front().size());
+    }
+  }
+  return {
+      .text = diagnosis_text(diagnosis, rig),
+      .remedy = remedy_text(diagnosis, rig),
+      .figure = {"Folds by height; the stronger a pad is filled, the more its height or its start matters",
+                 drape_picture({panel}, problem.definition().mold->extent())},
+      .folds = folds_report(diagnosis, rig)};
+}
+
 /// The page of a plan. @param drape, sequence  pictures, as SVG.
 PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,
-                   const std::string& drape, const std::string& sequence) {
+                   const Diagnosis& diagnosis, const std::string& drape, const std::string& sequence) {
   const RigOptions& rig = *problem.definition().grippers;
   const StagedResult& search = result.search;
   PlanReport report;
@@ -297,6 +339,7 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   report.verdict = fmt::format("{} {}.", verdict_text(problem, result), capitalised(search.message));
   report.reach = explain_reach(problem.reach_problem(), problem.reach()) + " " + problem.ply_floor().meaning;
   if (const std::string force = best_force_text(problem, result); !force.empty()) report.reach += " " + force;
+  if (!diagnosis.folds.empty() || diagnosis.edge) report.reasons = reasons_of(problem, result, diagnosis);
   report.rows = rows_of(problem, result);
   report.notes = notes_of(problem, result.best, search.best_fidelity);
   if (trust.spread) report.tables.push_back(spread_report(*trust.spread));
@@ -340,7 +383,7 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
 }  // namespace
 
 void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result,
-                const PlanTrust& trust) {
+                const PlanTrust& trust, const Diagnosis& diagnosis) {
   const RigOptions& rig = *problem.definition().grippers;
   const StagedResult& search = result.search;
   write_schedule(folder / "schedule.json", search.best.schedule, rig);
@@ -365,7 +408,8 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
   write_text(folder / "sequence.svg", sequence);
   if (result.design)
     write_text(folder / kDesignFile, dump_json(resolved_case(problem.definition()), 2) + "\n");
-  write_text(folder / "report.html", html_report(page_of(problem, result, trust, drape, sequence)));
+  write_text(folder / "report.html",
+             html_report(page_of(problem, result, trust, diagnosis, drape, sequence)));
 }
 
 std::string comparison_table(const DrapeProblem& problem, const PlanResult& result) {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "planner/diagnosis/diagnosis.hpp"
 #include "planner/report/page.hpp"
 #include "planner/report/picture.hpp"
 #include "planner/search/plan.hpp"
@@ -39,7 +41,11 @@ inline constexpr const char* kDesignFile = "design.json";
 /// Writes all files of a plan but result.json and resolved.json: schedule.json and .csv of the best,
 /// schedules of the baselines, contour picture, charts, VTU and PVD, report.html.
 void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result,
-                const PlanTrust& trust = {});
+                const PlanTrust& trust = {}, const Diagnosis& diagnosis = {});
+
+/// result.json of a plan (plan_results.cpp).
+nlohmann::json plan_json(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,
+                         const Diagnosis& diagnosis);
 
 /// Whether the best drape is good enough, by the tolerances of its case; if not, whether another schedule could be.
 std::string verdict_text(const DrapeProblem& problem, const PlanResult& result);

@@ -77,6 +77,7 @@ class StagedSearch {
       }
       search_reports();
       conclude(result_);
+      keep_learned();
     } catch (const Interrupted&) {
       conclude_early();
     }
@@ -107,6 +108,7 @@ class StagedSearch {
                                 const std::string& stage, bool report = false);
   void record(const Trial& trial, const std::string& fidelity, const std::string& stage);
   const Trial* best_at(const std::string& fidelity) const;
+  void keep_learned();
   void conclude_early();
 
   const SequenceFrame& frame_;
@@ -336,6 +338,21 @@ void StagedSearch::compare(std::vector<Trial> trials, const std::string& stage) 
   const std::vector<Outcome> outcomes = evaluate(trials, kReport, stage, true);
   for (size_t k = 0; k < trials.size(); ++k)
     result_.finalists.push_back({trials[k].name, schedule_of(trials[k]), outcomes[k]});
+}
+
+void StagedSearch::keep_learned() {
+  search_.set_level(level_of(kReport));
+  for (const Trial& trial : trials_[kReport]) {
+    const Eigen::VectorXd place = grippers_.encode(trial.strokes);
+    if (schedule_hash(schedule_of(trial)) != schedule_hash(result_.best.schedule) ||
+        !std::isfinite(search_.value_at(place)))
+      continue;
+    result_.learned = {trial.strokes,
+                       [family = grippers_, expected = search_.expected_near(place)](const Strokes& strokes) {
+                         return expected(family.encode(strokes));
+                       }};
+    return;
+  }
 }
 
 void StagedSearch::conclude_early() {

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,14 @@ struct HistoryEntry {
   double best_so_far = 0;  ///< lowest valid objective at this fidelity; infinite if there is none
 };
 
+/// What a search has learned of the neighbourhood of its best schedule.
+struct Learned {
+  Strokes strokes;  ///< of the best schedule
+  /// Expected at the reporting fidelity of strokes near these. Not to be used once the problem is gone whose
+  /// objective the search was given.
+  std::function<double(const Strokes&)> objective;
+};
+
 struct StagedResult {
   Candidate uniform, wave;  ///< the baselines, at the reporting fidelity
   /// The best at the reporting fidelity whose commands were followed; a baseline if nothing beats them. Of an
@@ -55,6 +64,9 @@ struct StagedResult {
   bool beats_baselines = false;
   bool interrupted = false;
   std::string message;  ///< the outcome in a sentence
+  /// Absent where the best schedule is none of those that were searched, as some baselines, or the search was
+  /// interrupted.
+  std::optional<Learned> learned;
   std::vector<HistoryEntry> history;
   int evaluations = 0;  ///< different (schedule, fidelity) pairs
   int failed_evaluations = 0;

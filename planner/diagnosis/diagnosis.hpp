@@ -1,0 +1,38 @@
+// Why a drape is as it is, for an engineer: its folds, its edge, and the strokes that matter.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/diagnosis/edge_miss.hpp"
+#include "planner/diagnosis/effects.hpp"
+#include "planner/diagnosis/folds.hpp"
+
+namespace drapeplan {
+
+struct Diagnosis {
+  std::vector<Fold> folds;            ///< highest first
+  std::optional<EdgeMiss> edge;       ///< where the edge is farther off than allowed
+  std::vector<StrokeEffect> effects;  ///< of all grippers; empty where nothing was learned of them
+
+  /// The fold that stood first; null without any whose time is known.
+  [[nodiscard]] const Fold* first() const;
+};
+
+/// What is wrong with a drape. @param drape  of this problem at this fidelity, with frames.
+/// @param effects  of the search that found it; may be empty.
+Diagnosis diagnosis_of(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
+                       std::vector<StrokeEffect> effects = {});
+
+/// One paragraph: the highest fold and what holds it, the first fold, the edge, the strokes that matter.
+/// Empty of a drape that keeps what its case allows.
+std::string diagnosis_text(const Diagnosis& diagnosis, const RigOptions& rig);
+
+/// What would change it, a sentence for each kind of trouble; empty if there is none.
+std::string remedy_text(const Diagnosis& diagnosis, const RigOptions& rig);
+
+nlohmann::json diagnosis_json(const Diagnosis& diagnosis, const RigOptions& rig);
+
+}  // namespace drapeplan
