@@ -5,7 +5,7 @@
 
 #include "planner/cli/cli.hpp"
 #include "planner/drape/map_result.hpp"
-#include "planner/report/run_files.hpp"
+#include "planner/report/vtu.hpp"
 
 namespace drapeplan {
 namespace {

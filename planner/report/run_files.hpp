@@ -27,14 +27,6 @@ std::vector<ReportRow> reference_rows(const Case& definition);
 /// The scores of one drape: that which the objective takes, and the other one of a ply that was pressed.
 std::vector<ReportRow> drape_rows(const std::string& name, const Drape& drape);
 
-/// Writes a mapped net: net.csv, one row `u,v,x,y,z,shear_deg` per node [m, deg], shear as the mean of the
-/// cells around it; and net.vtu for ParaView.
-void write_net(const std::filesystem::path& folder, const Net& net);
-
-/// Writes `frames` as NAME_000.vtu ... with the collection NAME.pvd.
-void write_frames(const std::filesystem::path& folder, const std::string& name, const Mesh& mesh,
-                  const std::vector<Snapshot>& frames, const Mold* mold, double thickness);
-
 /// The case with its design, in a run directory; it runs on its own.
 inline constexpr const char* kDesignFile = "design.json";
 

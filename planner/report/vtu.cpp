@@ -8,11 +8,13 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <numbers>
 #include <span>
 #include <stdexcept>
 
 #include "planner/base/base64.hpp"
 #include "planner/base/text.hpp"
+#include "planner/score/scoring.hpp"
 
 namespace drapeplan {
 namespace {
@@ -137,6 +139,50 @@ void write_pvd(const std::filesystem::path& file, const std::vector<PvdEntry>& e
                         escape_markup(entry.file));
   }
   write_text(file, text + "  </Collection>\n</VTKFile>\n");
+}
+
+void write_net(const std::filesystem::path& folder, const Net& net) {
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  const size_t columns = net.u.size(), rows = net.v.size();
+  Mesh mesh;
+  Snapshot place;
+  place.position = net.nodes;
+  place.shear = shear_field(net);
+  std::vector<double> shear(net.nodes.size(), 0.0), cells(net.nodes.size(), 0.0);
+  for (size_t n = 0; n < net.nodes.size(); ++n)
+    mesh.rest.emplace_back(net.u[n % columns], net.v[n / columns]);
+  for (size_t j = 0; j + 1 < rows; ++j) {
+    for (size_t i = 0; i + 1 < columns; ++i) {
+      const size_t at = i + j * columns;
+      const std::array<size_t, 4> corners{at, at + 1, at + 1 + columns, at + columns};
+      mesh.quads.push_back({int(corners[0]), int(corners[1]), int(corners[2]), int(corners[3])});
+      for (const size_t corner : corners) {
+        shear[corner] += place.shear[i + j * (columns - 1)];
+        ++cells[corner];
+      }
+    }
+  }
+  std::string text = "u,v,x,y,z,shear_deg\n";
+  for (size_t n = 0; n < net.nodes.size(); ++n) {
+    const Eigen::Vector3d& p = net.nodes[n];
+    for (const double value : {mesh.rest[n].x(), mesh.rest[n].y(), p.x(), p.y(), p.z()})
+      text += exact(value) + ',';
+    text += exact(kDegrees * shear[n] / cells[n]) + '\n';
+  }
+  write_text(folder / "net.csv", text);
+  write_vtu(folder / "net.vtu", mesh, place);
+}
+
+void write_frames(const std::filesystem::path& folder, const std::string& name, const Mesh& mesh,
+                  const std::vector<Snapshot>& frames, const Mold* mold, double thickness) {
+  std::vector<PvdEntry> entries;
+  for (size_t k = 0; k < frames.size(); ++k) {
+    const std::string file = fmt::format("{}_{:03}.vtu", name, k);
+    const std::vector<double> gaps = mold ? nodal_gaps(frames[k], *mold, thickness) : std::vector<double>{};
+    write_vtu(folder / file, mesh, frames[k], gaps);
+    entries.push_back({frames[k].time, file});
+  }
+  write_pvd(folder / (name + ".pvd"), entries);
 }
 
 }  // namespace drapeplan

@@ -8,6 +8,7 @@
 #include "fem/core/snapshot.hpp"
 #include "fem/mesh/mesh.hpp"
 #include "mapping/mold.hpp"
+#include "mapping/net.hpp"
 
 namespace drapeplan {
 
@@ -31,5 +32,13 @@ struct PvdEntry {
 
 /// Writes a ParaView collection; times keep all their digits.
 void write_pvd(const std::filesystem::path& file, const std::vector<PvdEntry>& entries);
+
+/// Writes a mapped net: net.csv, one row `u,v,x,y,z,shear_deg` per node [m, deg], shear as the mean of the
+/// cells around it; and net.vtu for ParaView.
+void write_net(const std::filesystem::path& folder, const Net& net);
+
+/// Writes `frames` as NAME_000.vtu ... with the collection NAME.pvd.
+void write_frames(const std::filesystem::path& folder, const std::string& name, const Mesh& mesh,
+                  const std::vector<Snapshot>& frames, const Mold* mold, double thickness);
 
 }  // namespace drapeplan
