@@ -49,9 +49,18 @@ struct DesignVariable {
   std::string from, to;  ///< quantities with one unit, or bare numbers
 };
 
+/// Which of the schedules that were seen at the reporting fidelity wins.
+enum class Choose {
+  nominal,  ///< that with the lowest objective in the case as it is
+  mean,     ///< with the lowest mean over plants that differ from it (planner/trust/spread.hpp), the case
+            ///< included
+  worst,    ///< with the lowest of the largest objectives over these
+};
+
 struct OptimiseOptions {
   double budget = 600;           ///< of a plan, with its reports [s]
   int evaluations = 0;           ///< budget below the reporting fidelity; 0: `budget`
+  Choose choose = Choose::nominal;
   int finalists = 4;             ///< one more is evaluated at the reporting fidelity in the end, at least
   double shortest_stroke = 1.0;  ///< of a gripper after the preshape [s]
   double longest_sequence = 15;  ///< after the preshape [s]

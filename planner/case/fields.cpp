@@ -157,6 +157,10 @@ void visit_optimise(FieldVisitor& v, OptimiseOptions& o) {
            Dimension::none, from(0, 1e7)});
   v.field({"finalists", &o.finalists, "Schedules that are evaluated at the reporting fidelity in the end, at least: one more than this",
            Dimension::none, from(1, 1e4)});
+  v.field({"choose", choice(o.choose, {"nominal", "mean", "worst"}),
+           "Which finalist wins: that with the lowest objective in the case as it is, or with the lowest "
+           "mean or worst "
+           "one over plants that differ from it in friction, placement, shear, joints and times"});
   v.field({"shortest_stroke", &o.shortest_stroke, "Of a gripper after the preshape", Dimension::time,
            positive()});
   v.field({"longest_sequence", &o.longest_sequence, "After the preshape", Dimension::time, positive()});

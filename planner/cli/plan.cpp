@@ -17,7 +17,7 @@
 #include "planner/search/finalists.hpp"
 #include "planner/search/interrupted.hpp"
 #include "planner/search/plan.hpp"
-#include "planner/trust/claim.hpp"
+#include "planner/trust/after_search.hpp"
 
 namespace drapeplan {
 namespace {
@@ -87,12 +87,10 @@ void print_start(const DrapeProblem& problem) {
 std::string result_text(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,
                         const Diagnosis& diagnosis, const std::filesystem::path& folder) {
   std::string text = fmt::format("\n{}\n", verdict_text(problem, result));
-  const RigOptions& rig = *problem.definition().grippers;
-  for (const std::string& why : {diagnosis_text(diagnosis, rig), remedy_text(diagnosis, rig)}) {
-    if (!why.empty()) text += why + "\n";
-  }
+  text += reasons_text(diagnosis, *problem.definition().grippers);
   text += fmt::format("\n{}\n{}\n", comparison_table(problem, result), result.search.message);
   if (const std::string force = best_force_text(problem, result); !force.empty()) text += force + "\n";
+  if (trust.confirmation) text += confirmation_text(*trust.confirmation) + "\n";
   if (trust.spread) text += spread_text(*trust.spread) + "\n";
   if (!trust.spread && !result.search.interrupted && result.best.score.valid)
     text +=
@@ -112,22 +110,6 @@ void build_models(const DrapeProblem& problem) {
   for (const std::string& fidelity : fidelities) static_cast<void>(problem.model(fidelity));
 }
 
-/// Share of a budget of time that the runs in disturbed plants may take.
-constexpr double kSpreadShare = 0.05;
-
-/// The best schedule and the better baseline in plants that differ; nothing where there is no time for it.
-std::optional<PlantSpread> spread_in_plants(const DrapeProblem& problem, const PlanResult& result,
-                                            EvaluationLog& log, const PlanOptions& planning) {
-  const OptimiseOptions& optimise = problem.definition().optimise;
-  const SpreadOptions options{.fidelities = plan_ladder(problem.definition()),
-                              .seconds = optimise.evaluations > 0 ? 0 : kSpreadShare * optimise.budget,
-                              .design = result.design ? design_hash(result.design->overrides) : 0,
-                              .threads = planning.threads,
-                              .stop = planning.stop};
-  return spread_of(problem, result.search.best.schedule, better_baseline(result.search).schedule, options,
-                   log);
-}
-
 /// Plans one case into its folder; throws what went wrong.
 PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFolder& out) {
   const auto clock = std::chrono::steady_clock::now();
@@ -144,7 +126,7 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
   const PlanOptions planning{
       .resume = options.resume,
       .threads = options.common.threads,
-      .kept = kSpreadShare,
+      .kept = share_after_search(definition.optimise),
       .stop = [] { return InterruptGuard::interrupted(); },
       .moved = [&](const std::filesystem::path& earlier) { print_set_aside(earlier, options.common); }};
   EvaluationLog log = start_log(problem->definition(), out, planning);
@@ -157,17 +139,11 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
     if (talk) std::cerr << choice_table(*trust.choice, definition.optimise, planning.threads);
   }
   PlanResult result = plan(*problem, log, planning, show);
-  if (trust.choice && !result.search.interrupted)
-    claim_beyond(trust.choice->chosen.back().objective_error, result.search);
   const DrapeProblem& planned = planned_problem(*problem, result);
   bool interrupted = result.search.interrupted;
   if (result.best.score.valid && !interrupted) {
-    show({.stage = "spread",
-          .done = log.size(),
-          .best = result.best.score.objective,
-          .seconds_left = std::numeric_limits<double>::quiet_NaN()});
     try {
-      trust.spread = spread_in_plants(planned, result, log, planning);
+      look_closer(planned, log, planning, show, result, trust);
     } catch (const Interrupted&) {
       interrupted = true;
     }

@@ -207,7 +207,8 @@ std::string score_line(const Drape& drape) {
 
 /// The files of a drape beside result.json and resolved.json.
 void write_drape(const std::filesystem::path& folder, const DrapeProblem& problem, const Drape& drape,
-                 const Schedule& schedule, const Recorder& recorder, const SimulateOptions& options) {
+                 const Schedule& schedule, const Recorder& recorder, const SimulateOptions& options,
+                 const std::string& verdict, const Diagnosis& diagnosis) {
   const Case& definition = problem.definition();
   const Model& model = problem.model(options.fidelity);
   write_frames(folder, "ply", model.scene().mesh, drape.frames, &*definition.mold,
@@ -219,6 +220,8 @@ void write_drape(const std::filesystem::path& folder, const DrapeProblem& proble
   write_schedule(folder / "schedule.json", schedule, *definition.grippers);
   write_schedule_csv(folder / "schedule.csv", schedule, *definition.grippers);
   DrapePage page{
+      .verdict = verdict,
+      .reasons = {},
       .rows = reference_rows(definition),
       .figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", picture}},
       .files = {{"schedule.json", "the sequence, knots"},
@@ -226,6 +229,7 @@ void write_drape(const std::filesystem::path& folder, const DrapeProblem& proble
                 {"mold.vtu", "the mold, for ParaView"}}};
   const std::vector<ReportRow> own = drape_rows(options.schedule, drape);
   page.rows.insert(page.rows.end(), own.begin(), own.end());
+  if (!diagnosis.good()) page.reasons = reasons_report(problem, drape, options.fidelity, diagnosis);
   write_run(folder, definition, model, recorder, drape.run, std::move(page));
 }
 
@@ -250,10 +254,13 @@ int simulate_drape(Case definition, const SimulateOptions& options) {
   add_stable_step(model, drape.run, result);
   add_scores(drape.score, drape.other, result);
   std::string verdict;  // of a run that has ended
+  Diagnosis diagnosis;  // needs instants in between
   if (drape.run.summary.status != RunStatus::paused) {
     const Acceptance acceptance = acceptance_of(problem, drape, options.fidelity);
     result["acceptance"] = acceptance_json(acceptance);
-    verdict = acceptance_text(acceptance) + "\n";
+    verdict = acceptance_text(acceptance);
+    if (files) diagnosis = diagnosis_of(problem, drape, options.fidelity);
+    if (!diagnosis.good()) result["diagnosis"] = diagnosis_json(diagnosis, *problem.definition().grippers);
   }
   const std::vector<std::string> warnings = drape_warnings(problem, drape, options.fidelity);
   print_warnings(warnings, options.common);
@@ -261,10 +268,13 @@ int simulate_drape(Case definition, const SimulateOptions& options) {
   result["terms"] = model.term_names();
   add_probes(recorder, result);
   const std::string text = summary_text(drape.run.summary, model.node_count()) + score_line(drape) +
-                           probes_text(recorder.history()) + verdict;
+                           probes_text(recorder.history()) + verdict + (verdict.empty() ? "" : "\n") +
+                           reasons_text(diagnosis, *problem.definition().grippers);
   keep_all([&] { save(options, model, drape.run.state, &schedule); },
            [&] {
-             if (files) write_drape(options.common.out, problem, drape, schedule, recorder, options);
+             if (files)
+               write_drape(options.common.out, problem, drape, schedule, recorder, options, verdict,
+                           diagnosis);
              deliver(result, text, options.common, &problem.definition());
            });
   return drape.score.valid || drape.run.summary.status == RunStatus::paused ? kDone : kNotFinished;

@@ -43,7 +43,7 @@ std::string cause_text(const Fold& fold, const RigOptions& rig) {
                          1e3 * (rig.place(fold.grippers.front()) - fold.at).norm(), grippers);
     case FoldKind::bridging:
       return fmt::format(
-          "between {} the {} spans a hollow of the mold as a taut chord: it is {} shorter than the mold "
+          "between {} the {} spans a hollow of the mold as a chord: it is {} shorter than the mold "
           "below it",
           grippers, fibre_text(fold.fibre), millimetres(std::max(-fold.slack, 0.0)));
     case FoldKind::held_up:
@@ -81,10 +81,11 @@ std::string held_text(const Fold& fold, const RigOptions& rig) {
 }
 
 std::string time_text(const Fold& fold) {
-  if (std::isnan(fold.since)) return "it has not come to rest by the end";
+  if (std::isnan(fold.before)) return {};  // nobody looked
+  if (std::isnan(fold.since)) return "; it has not come to rest by the end";
   const std::string when = fold.before < fold.since
-                               ? fmt::format("it stands since {:.1f} to {:.1f} s", fold.before, fold.since)
-                               : fmt::format("it stands since {:.1f} s", fold.since);
+                               ? fmt::format("; it stands since {:.1f} to {:.1f} s", fold.before, fold.since)
+                               : fmt::format("; it stands since {:.1f} s", fold.since);
   if (!(fold.down > 0) || fold.kind == FoldKind::edge || fold.kind == FoldKind::held_up) return when;
   return fmt::format("{}, the last of these pads is down since {:.1f} s", when, fold.down);
 }
@@ -143,7 +144,7 @@ nlohmann::json fold_json(const Fold& fold, const RigOptions& rig) {
           {"pad_gap", fold.pad_gap},
           {"saturated", fold.saturated},
           {"since", finite(fold.since)},
-          {"before", fold.before},
+          {"before", finite(fold.before)},
           {"down", finite(fold.down)},
           {"sides_down", finite(fold.sides_down)}};
 }
@@ -174,16 +175,16 @@ std::string diagnosis_text(const Diagnosis& diagnosis, const RigOptions& rig) {
   if (!diagnosis.folds.empty()) {
     const Fold& highest = diagnosis.folds.front();
     sentences.push_back(fmt::format(
-        "The ply is highest, {}, at {} ({}): {}{}; {}.", millimetres(highest.height), place_text(highest.at),
+        "The ply is highest, {}, at {} ({}): {}{}{}.", millimetres(highest.height), place_text(highest.at),
         name_of(highest.kind), cause_text(highest, rig), held_text(highest, rig), time_text(highest)));
     const Fold* first = diagnosis.first();
     if (first != nullptr && first != &highest)
-      sentences.push_back(fmt::format("The first that stands, {} high, is at {} ({}): {}; {}.",
+      sentences.push_back(fmt::format("The first that stands, {} high, is at {} ({}): {}{}.",
                                       millimetres(first->height), place_text(first->at), name_of(first->kind),
                                       cause_text(*first, rig), time_text(*first)));
   }
   if (diagnosis.edge) sentences.push_back(edge_text(*diagnosis.edge, rig));
-  if (std::string effects = effects_text(diagnosis.effects, rig); !effects.empty() && !sentences.empty())
+  if (std::string effects = effects_text(diagnosis.effects, rig); !effects.empty() && !diagnosis.good())
     sentences.push_back(std::move(effects));
   return fmt::format("{}", fmt::join(sentences, " "));
 }
@@ -201,9 +202,9 @@ std::string remedy_text(const Diagnosis& diagnosis, const RigOptions& rig) {
       case FoldKind::bridging:
         sentences.emplace_back(
             rig.interlinks && !closes
-                ? "A taut chord needs grippers that come nearer to each other: let the interlinks close "
+                ? "A chord needs grippers that come nearer to each other: let the interlinks close "
                   "(grippers.interlinks), or press the ply."
-                : "A taut chord needs grippers that land nearer to each other, or a press.");
+                : "A chord needs grippers that land nearer to each other, or a press.");
         break;
       case FoldKind::held_up:
         sentences.emplace_back(
@@ -236,6 +237,14 @@ std::string remedy_text(const Diagnosis& diagnosis, const RigOptions& rig) {
                                  "drapeplan reach shows how near they can come."
                                : "The edge follows its grippers.");
   return fmt::format("{}", fmt::join(sentences, " "));
+}
+
+std::string reasons_text(const Diagnosis& diagnosis, const RigOptions& rig) {
+  std::string text;
+  for (const std::string& part : {diagnosis_text(diagnosis, rig), remedy_text(diagnosis, rig)}) {
+    if (!part.empty()) text += part + "\n";
+  }
+  return text;
 }
 
 nlohmann::json diagnosis_json(const Diagnosis& diagnosis, const RigOptions& rig) {

@@ -17,6 +17,8 @@ struct Diagnosis {
   std::optional<EdgeMiss> edge;       ///< where the edge is farther off than allowed
   std::vector<StrokeEffect> effects;  ///< of all grippers; empty where nothing was learned of them
 
+  /// Nothing exceeds what the case allows, or nothing was simulated to its end.
+  [[nodiscard]] bool good() const { return folds.empty() && !edge; }
   /// The fold that stood first; null without any whose time is known.
   [[nodiscard]] const Fold* first() const;
 };
@@ -32,6 +34,9 @@ std::string diagnosis_text(const Diagnosis& diagnosis, const RigOptions& rig);
 
 /// What would change it, a sentence for each kind of trouble; empty if there is none.
 std::string remedy_text(const Diagnosis& diagnosis, const RigOptions& rig);
+
+/// Both for the console, a line each; empty if there is nothing to say.
+std::string reasons_text(const Diagnosis& diagnosis, const RigOptions& rig);
 
 nlohmann::json diagnosis_json(const Diagnosis& diagnosis, const RigOptions& rig);
 

@@ -49,7 +49,7 @@ std::optional<int> FibreLines::next(int node, Fibre fibre, bool forward) const {
   return next < 0 ? std::nullopt : std::optional(next);
 }
 
-FibreSpan FibreLines::span(int node, Fibre fibre, const std::function<bool(int)>& inside,
+FibreSpan FibreLines::span(int node, Fibre fibre, const std::function<bool(int, int)>& goes_on,
                            const std::vector<Eigen::Vector3d>& position,
                            const std::vector<Eigen::Vector3d>& feet) const {
   FibreSpan span;
@@ -57,10 +57,10 @@ FibreSpan FibreLines::span(int node, Fibre fibre, const std::function<bool(int)>
     std::vector<int> nodes;
     at_edge = false;
     // A line has no more nodes than the mesh: where lines of an outline meet, nothing goes round.
-    for (int at = node; inside(at) && nodes.size() < next_.size();) {
+    for (int at = node; nodes.size() < next_.size();) {
       const std::optional<int> step = next(at, fibre, forward);
       at_edge = !step;
-      if (!step) break;
+      if (!step || !goes_on(at, *step)) break;
       nodes.push_back(at = *step);
     }
     return nodes;

@@ -16,7 +16,7 @@ enum class Fibre { warp, weft };
 /// A piece of a fibre, from node to node.
 struct FibreSpan {
   std::vector<int> nodes;  ///< in order; the node that it was asked for among them
-  bool from_edge = false;  ///< it begins at the ply's edge, higher than where it was to begin
+  bool from_edge = false;  ///< it begins at the ply's edge: there is no more of it
   bool to_edge = false;    ///< it ends there
   double ply = 0;          ///< length of the ply, along its nodes [m]
   double below = 0;        ///< length of the path of their feet on the mold [m]
@@ -38,10 +38,9 @@ class FibreLines {
   /// The next node along a fibre; nothing at the ply's edge.
   [[nodiscard]] std::optional<int> next(int node, Fibre fibre, bool forward) const;
 
-  /// The fibre through a node as far as `inside` holds in both directions: the first node outside is the last
-  /// of the span.
+  /// The fibre through a node, in both directions from node to next node as long as `goes_on` says so.
   /// @param position  of nodes [m].  @param feet  of the same on the mold [m].
-  [[nodiscard]] FibreSpan span(int node, Fibre fibre, const std::function<bool(int node)>& inside,
+  [[nodiscard]] FibreSpan span(int node, Fibre fibre, const std::function<bool(int from, int to)>& goes_on,
                                const std::vector<Eigen::Vector3d>& position,
                                const std::vector<Eigen::Vector3d>& feet) const;
 

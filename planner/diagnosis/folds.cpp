@@ -14,8 +14,9 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Of two folds that are nearer to each other than this share of the spacing only the higher one counts.
 constexpr double kApart = 0.5;
-/// A fold reaches along its fibre to where the ply is lower than this share of its height.
-constexpr double kFoot = 0.25;
+/// A fold reaches along its fibre to where the ply is lower than this share of its height, or rises again by
+/// the other one from node to node.
+constexpr double kFoot = 0.1, kRise = 0.02;
 /// A pad that stands above the mold by this share of a fold beside it holds it up.
 constexpr double kHeldShare = 0.5;
 /// What lies nearer to a pad's centre than this many radii lies at its rim.
@@ -23,6 +24,8 @@ constexpr double kRim = 1.5;
 /// Shear of the ply beside a pad, whose own piece cannot shear, from which a fold at the rim is laid to it:
 /// over the radius of a pad it displaces the ply by a tenth of that radius.
 constexpr double kRimShearDeg = 6;
+/// Share of a fold's height that the slack of a fibre must explain, where the other fibre is a chord.
+constexpr double kExplained = 0.5;
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 /// The later one of two instants; NaN, which is never, is later than all.
@@ -103,10 +106,12 @@ class FoldFinder {
     return found;
   }
 
+  /// From valley to valley, or from where the ply is low.
   [[nodiscard]] FibreSpan span_of(int node, Fibre fibre) const {
-    const double foot = kFoot * gap(node);
+    const double low = kFoot * gap(node), rise = kRise * gap(node);
     return lines_.span(
-        node, fibre, [&](int at) { return gap(at) > foot; }, drape_.run.final.position, feet_);
+        node, fibre, [&](int from, int to) { return gap(from) > low && gap(to) < gap(from) + rise; },
+        drape_.run.final.position, feet_);
   }
 
   [[nodiscard]] double gap_in(const Snapshot& frame, int node) const {
@@ -117,7 +122,7 @@ class FoldFinder {
   /// The first instant from which on `holds` is true of all frames, and the one before it.
   template <class Holds>
   [[nodiscard]] std::array<double, 2> since(const Holds& holds) const {
-    std::array<double, 2> found{kNaN, 0};
+    std::array<double, 2> found{kNaN, kNaN};
     for (auto frame = drape_.frames.rbegin(); frame != drape_.frames.rend(); ++frame) {
       if (!holds(*frame)) {
         found[1] = frame->time;
@@ -131,6 +136,16 @@ class FoldFinder {
   /// When a node came down to `height` for good [s].
   [[nodiscard]] double down(int node, double height) const {
     return since([&](const Snapshot& frame) { return gap_in(frame, node) <= height; })[0];
+  }
+
+  /// An end of a span is at the ply's edge and as good as not lower.
+  [[nodiscard]] bool reaches_edge(int node, const FibreSpan& warp, const FibreSpan& weft) const {
+    const double high = kHeldShare * gap(node);
+    for (const FibreSpan* span : {&warp, &weft}) {
+      if (span->from_edge && gap(span->nodes.front()) > high) return true;
+      if (span->to_edge && gap(span->nodes.back()) > high) return true;
+    }
+    return false;
   }
 
   /// Largest shear of the elements at the rim of a pad [deg].
@@ -151,21 +166,25 @@ class FoldFinder {
     fold.at = mesh_.rest[size_t(node)];
     fold.height = gap(node);
     const FibreSpan warp = span_of(node, Fibre::warp), weft = span_of(node, Fibre::weft);
-    fold.fibre = warp.slack() >= weft.slack() ? Fibre::warp : Fibre::weft;
-    if (bridges_[size_t(node)]) fold.fibre = warp.slack() < weft.slack() ? Fibre::warp : Fibre::weft;
+    const Fibre more = warp.slack() >= weft.slack() ? Fibre::warp : Fibre::weft;
+    const FibreSpan& longer = more == Fibre::warp ? warp : weft;
+    const double least = std::min(warp.slack(), weft.slack());
+    const bool arch = arch_height(longer.slack(), longer.below) >= kExplained * fold.height;
+    const bool chord = bridges_[size_t(node)] || longer.slack() <= 0 || (!arch && least < 0);
+    fold.fibre = chord == (more == Fibre::warp) ? Fibre::weft : Fibre::warp;
     const FibreSpan& span = fold.fibre == Fibre::warp ? warp : weft;
     fold.span = span.below;
     fold.slack = span.slack();
     fold.grippers = beside(fold.at, fold.fibre);
     const int nearest = nearest_gripper(fold.at);
     const double distance = (rig_.place(nearest) - fold.at).norm();
-    const bool at_edge = warp.from_edge || warp.to_edge || weft.from_edge || weft.to_edge;
     const double nearest_gap = gap(pads_[size_t(nearest)]);
-    if (at_edge && distance > rig_.pad_radius && nearest_gap < kHeldShare * fold.height) {
+    if (chord) {
+      fold.kind = FoldKind::bridging;
+    } else if (reaches_edge(node, warp, weft) && distance > rig_.pad_radius &&
+               nearest_gap < kHeldShare * fold.height) {
       fold.kind = FoldKind::edge;
       fold.grippers = {nearest};
-    } else if (bridges_[size_t(node)] || fold.slack <= 0) {
-      fold.kind = FoldKind::bridging;
     } else if (nearest_gap >= kHeldShare * fold.height) {
       fold.kind = FoldKind::held_up;
       fold.grippers = {nearest};

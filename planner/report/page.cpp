@@ -95,7 +95,8 @@ std::string score_table(const std::vector<ReportRow>& rows) {
          "boundary. "
          "Rows in italics are reported elsewhere and are not compared." +
          (std::any_of(rows.begin(), rows.end(), [](const ReportRow& row) { return row.beside; })
-              ? " Grey rows are scores that the objective does not take; nor are they compared."
+              ? " Grey rows are scores that the objective does not take, or drapes at a finer setting: they "
+                "are not compared."
               : "") +
          "</caption>\n</table></div>\n";
 }

@@ -21,6 +21,7 @@
 #include "planner/schedule/file.hpp"
 #include "planner/score/scoring.hpp"
 #include "planner/search/finalists.hpp"
+#include "planner/trust/setting_runs.hpp"
 
 namespace drapeplan {
 namespace {
@@ -240,12 +241,22 @@ ReportTable spread_report(const PlantSpread& spread) {
   return table;
 }
 
+/// The better baseline and the winner, one fidelity above the reporting one.
+void add_finer_rows(const Confirmation& confirmation, PlanReport& report) {
+  const std::string setting = setting_text(confirmation.options);
+  for (const auto& [name, score] :
+       {std::pair<const char*, const Score&>{"better baseline", confirmation.finer_baseline},
+        {"optimised", confirmation.finer}})
+    report.rows.push_back({.name = fmt::format("{}, {}", name, setting), .score = score, .beside = true});
+  report.verdict += fmt::format(" {}.", capitalised(confirmation_text(confirmation)));
+}
+
 ReportTable folds_report(const Diagnosis& diagnosis, const RigOptions& rig) {
   ReportTable table{
       .title = "Folds",
       .caption =
           "The highest places, half a spacing of the rig apart at least. Slack is by how much the ply is "
-          "longer than the mold below the fold, along the fibre; below zero it is a taut chord.",
+          "longer than the mold below the fold, along the fibre; below zero it is a chord over a hollow.",
       .head = {"fold", "kind", "height [mm]", "at u, v [mm]", "along", "slack [mm]", "grippers",
                "stands since [s]"},
       .rows = {}};
@@ -261,10 +272,12 @@ ReportTable folds_report(const Diagnosis& diagnosis, const RigOptions& rig) {
   return table;
 }
 
-/// One picture: the best drape with its folds, and the grippers whose strokes matter.
-ReportReasons reasons_of(const DrapeProblem& problem, const PlanResult& result, const Diagnosis& diagnosis) {
+}  // namespace
+
+ReportReasons reasons_report(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
+                             const Diagnosis& diagnosis) {
   const RigOptions& rig = *problem.definition().grippers;
-  DrapePanel panel = drape_panel(problem, result.best, result.search.best_fidelity, "why");
+  DrapePanel panel = drape_panel(problem, drape, fidelity, "why");
   panel.subtitle.clear();
   for (const Fold& fold : diagnosis.folds) panel.folds.push_back(panel.position[size_t(fold.node)]);
   if (!diagnosis.effects.empty()) {
@@ -282,6 +295,8 @@ ReportReasons reasons_of(const DrapeProblem& problem, const PlanResult& result, 
       .folds = folds_report(diagnosis, rig)};
 }
 
+namespace {
+
 /// The page of a plan. @param drape, sequence  pictures, as SVG.
 PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,
                    const Diagnosis& diagnosis, const std::string& drape, const std::string& sequence) {
@@ -293,8 +308,10 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   report.verdict = fmt::format("{} {}.", verdict_text(problem, result), capitalised(search.message));
   report.reach = explain_reach(problem.reach_problem(), problem.reach()) + " " + problem.ply_floor().meaning;
   if (const std::string force = best_force_text(problem, result); !force.empty()) report.reach += " " + force;
-  if (!diagnosis.folds.empty() || diagnosis.edge) report.reasons = reasons_of(problem, result, diagnosis);
+  if (!diagnosis.good())
+    report.reasons = reasons_report(problem, result.best, search.best_fidelity, diagnosis);
   report.rows = rows_of(problem, result);
+  if (trust.confirmation) add_finer_rows(*trust.confirmation, report);
   report.notes = notes_of(problem, result.best, search.best_fidelity);
   if (trust.spread) report.tables.push_back(spread_report(*trust.spread));
   if (trust.choice) {

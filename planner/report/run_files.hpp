@@ -27,6 +27,11 @@ std::vector<ReportRow> reference_rows(const Case& definition);
 /// The scores of one drape: that which the objective takes, and the other one of a ply that was pressed.
 std::vector<ReportRow> drape_rows(const std::string& name, const Drape& drape);
 
+/// Why a drape is as it is: one paragraph, what would change it, the folds, and one picture of them and of
+/// the grippers whose strokes matter.
+ReportReasons reasons_report(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
+                             const Diagnosis& diagnosis);
+
 /// The case with its design, in a run directory; it runs on its own.
 inline constexpr const char* kDesignFile = "design.json";
 

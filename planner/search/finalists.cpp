@@ -63,7 +63,11 @@ const Candidate& better_baseline(const StagedResult& result) {
 void conclude(StagedResult& result) {
   std::stable_sort(result.finalists.begin(), result.finalists.end(),
                    [](const Candidate& a, const Candidate& b) { return outcome_ranks_before(a.outcome, b.outcome); });
-  result.best = result.finalists.front();
+  declare_best(result, result.finalists.front());
+}
+
+void declare_best(StagedResult& result, const Candidate& winner) {
+  result.best = winner;
   result.best_fidelity = kReport;
   const Outcome& to_beat = better_baseline(result).outcome;
   const double baseline = value_of(to_beat), best = value_of(result.best.outcome);

@@ -40,8 +40,11 @@ std::vector<Trial> pick_finalists(const SequenceFrame& frame,
 /// The baseline that is to be beaten: the one that ranks before the other.
 const Candidate& better_baseline(const StagedResult& result);
 
+/// Makes a finalist the best; the message says by how much it beats the baselines, or that it does not.
+void declare_best(StagedResult& result, const Candidate& best);
+
 /// Sorts the finalists, best first: failures last, before them what the rig did not follow. The first is the
-/// best; the message says by how much it beats the baselines, or that it does not.
+/// best.
 void conclude(StagedResult& result);
 
 /// Of candidates that were evaluated to their end and followed their commands: those that no other one beats,

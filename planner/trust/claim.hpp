@@ -5,6 +5,7 @@
 
 #include "planner/search/stages.hpp"
 #include "planner/trust/choice.hpp"
+#include "planner/trust/confirm.hpp"
 #include "planner/trust/spread.hpp"
 
 namespace drapeplan {
@@ -12,6 +13,7 @@ namespace drapeplan {
 /// What is known of how far the results of a plan can be trusted.
 struct PlanTrust {
   std::optional<FidelityChoice> choice;  ///< where the case names no numerical settings
+  std::optional<Confirmation> confirmation;  ///< where there was time for it
   std::optional<PlantSpread> spread;     ///< where a schedule was found that runs to its end
 };
 
@@ -19,5 +21,9 @@ struct PlanTrust {
 /// reporting fidelity: else `beats_baselines` is taken back, and the message says so.
 /// @param error  relative, of objectives at the reporting fidelity.
 void claim_beyond(double error, StagedResult& search);
+
+/// The same of a gain that is no longer there, or less than half as large, one fidelity above the reporting
+/// one.
+void claim_confirmed(const Confirmation& confirmation, StagedResult& search);
 
 }  // namespace drapeplan

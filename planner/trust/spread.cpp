@@ -162,6 +162,19 @@ std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule
   return spread;
 }
 
+double worth(const PlantSpread& spread, Choose rule) {
+  const auto objective = [](const DisturbedPair& pair) {
+    return pair.best.valid ? pair.best.objective : std::numeric_limits<double>::infinity();
+  };
+  if (rule == Choose::nominal) return objective(spread.pairs.front());
+  double sum = 0, most = -std::numeric_limits<double>::infinity();
+  for (const DisturbedPair& pair : spread.pairs) {
+    sum += objective(pair);
+    most = std::max(most, objective(pair));
+  }
+  return rule == Choose::mean ? sum / double(spread.pairs.size()) : most;
+}
+
 std::string spread_text(const PlantSpread& spread) {
   const bool is_baseline =
       std::all_of(spread.pairs.begin(), spread.pairs.end(),
@@ -192,7 +205,7 @@ std::string spread_text(const PlantSpread& spread) {
   return text;
 }
 
-nlohmann::json spread_json(const PlantSpread& spread) {
+nlohmann::json spread_json(const PlantSpread& spread, Choose rule) {
   nlohmann::json plants = nlohmann::json::array();
   for (const DisturbedPair& pair : spread.pairs) {
     plants.push_back({{"disturbance", pair.disturbance.empty() ? "none" : pair.disturbance},
@@ -206,7 +219,11 @@ nlohmann::json spread_json(const PlantSpread& spread) {
     baseline[part.key] = range_of(spread, &DisturbedPair::baseline, part.value);
   }
   return {{"fidelity", spread.fidelity},
-          {"rule", "the best is the candidate with the lowest objective in the undisturbed plant"},
+          {"rule", rule == Choose::nominal
+                       ? "the best is the candidate with the lowest objective in the undisturbed plant"
+                   : rule == Choose::mean
+                       ? "the best is the candidate with the lowest mean objective over all plants"
+                       : "the best is the candidate with the lowest worst objective over all plants"},
           {"best", std::move(best)},
           {"baseline", std::move(baseline)},
           {"better_in", spread.better()},

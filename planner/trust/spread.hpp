@@ -61,8 +61,13 @@ std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule
                                      const Schedule& baseline, const SpreadOptions& options,
                                      EvaluationLog& log);
 
+/// What a schedule is worth by a rule: the objective in the undisturbed plant, or the mean or the largest
+/// over all plants; infinite where it fails in one that counts.
+double worth(const PlantSpread& spread, Choose rule);
+
 /// "in 14 plants that differ (...) its objective is 21.10 to 23.00, worst with ...".
 std::string spread_text(const PlantSpread& spread);
-nlohmann::json spread_json(const PlantSpread& spread);
+/// @param rule  by which the best was chosen.
+nlohmann::json spread_json(const PlantSpread& spread, Choose rule = Choose::nominal);
 
 }  // namespace drapeplan

@@ -176,7 +176,9 @@ class Page {
     const std::vector<double>& time = seen.history().time;
     page_.title = definition.name;
     page_.description = definition.description;
-    page_.verdict = fmt::format("The run ended at {:.6g} s: {}.", run.final.time, summary.message);
+    page_.verdict = fmt::format("{}{}The run ended at {:.6g} s: {}.", drape.verdict,
+                                drape.verdict.empty() ? "" : " ", run.final.time, summary.message);
+    page_.reasons = std::move(drape.reasons);
     page_.rows = std::move(drape.rows);
     page_.figures = std::move(drape.figures);
     page_.facts = {

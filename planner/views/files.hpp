@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,8 @@ std::string grips_csv(const History& history);
 
 /// What the page of a run shows of a drape beside what every run has.
 struct DrapePage {
+  std::string verdict;                                     ///< good enough or not
+  std::optional<ReportReasons> reasons;                    ///< why not
   std::vector<ReportRow> rows;                             ///< scores and references
   std::vector<ReportFigure> figures;                       ///< shown first
   std::vector<std::pair<std::string, std::string>> files;  ///< name, what it holds

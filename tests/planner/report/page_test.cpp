@@ -29,6 +29,7 @@ TEST(HtmlReport, EscapesEveryTextButThePictures) {
   report.rows = {{evil, failed_score(evil)}};
   report.tables = {{evil, evil, {evil}, {{{evil}, true, false, evil}}}};
   report.figures = {{evil, "<svg><title>kept</title></svg>"}};
+  report.reasons = ReportReasons{evil, evil, {evil, "<svg></svg>"}, {evil, evil, {evil}, {{{evil}}}}};
   report.notes = {evil};
   report.facts = report.settings = report.files = {{evil, evil}};
   const std::string page = html_report(report);
@@ -36,6 +37,20 @@ TEST(HtmlReport, EscapesEveryTextButThePictures) {
   EXPECT_FALSE(contains(page, "\"x\""));
   EXPECT_TRUE(contains(page, "<svg><title>kept</title></svg>"));
   EXPECT_TRUE(contains(page, "failed: &lt;script&gt;"));
+}
+
+TEST(HtmlReport, SaysWhyBeforeTheScores) {
+  PlanReport report;
+  report.verdict = "Not accepted.";
+  report.rows = {row("uniform", 0.002)};
+  EXPECT_FALSE(contains(html_report(report), "Why, and what would change it"));
+  report.reasons = ReportReasons{"A chord.", "A press.", {}, {"Folds", "", {"fold"}, {{{"1"}}}}};
+  const std::string page = html_report(report);
+  const std::vector<std::string> order{"Not accepted.", "Why, and what would change it",
+                                       "A chord.",      "A press.",
+                                       "<th>fold</th>", "<h2>Scores</h2>"};
+  for (size_t k = 1; k < order.size(); ++k)
+    EXPECT_LT(page.find(order[k - 1]), page.find(order[k])) << order[k];
 }
 
 TEST(HtmlReport, LoadsNothingFromElsewhere) {

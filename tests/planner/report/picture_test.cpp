@@ -150,6 +150,18 @@ TEST(Picture, PanelsShareOneScaleAndPrintTheirLargestValues) {
   EXPECT_LE(count(svg, "<path"), 13u + 4u);
 }
 
+TEST(Picture, FoldsHaveNumbersAndPadsThatMatterAreFilled) {
+  DrapePanel why = panel(0.01);
+  EXPECT_TRUE(contains(drape_picture({why}, kExtent), ">largest gap<"));
+  why.folds = {{0, 0, 0}, {0.05, 0.05, 0}};
+  why.weights.assign(why.pads.size(), 0.5);
+  const std::string svg = drape_picture({why}, kExtent);
+  EXPECT_EQ(markup_fault(svg), "");
+  EXPECT_TRUE(contains(svg, ">1<") && contains(svg, ">2<") && contains(svg, ">folds<"));
+  EXPECT_TRUE(contains(svg, ">stroke that matters<"));
+  EXPECT_FALSE(contains(svg, ">largest gap<")) << "the first fold is the largest gap";
+}
+
 TEST(Picture, TitlesAreEscaped) {
   DrapePanel odd = panel(0.001);
   odd.title = "a < b & \"c\"";

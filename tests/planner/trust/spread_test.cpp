@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "planner/case/file.hpp"
@@ -94,6 +95,25 @@ TEST(Disturbances, MoveTheCommandedPlacesWithTheRig) {
         plant.ply.position + Eigen::Rotation2Dd(plant.ply.angle) * Eigen::Vector2d(0.1, 0);
     EXPECT_LT((schedule.plane_paths[0][0].xy - joint).norm(), 1e-12) << disturbance.name;
   }
+}
+
+TEST(PlantSpread, IsWorthWhatTheRuleSays) {
+  PlantSpread spread;
+  for (const double objective : {20.0, 22.0, 30.0}) {
+    DisturbedPair pair;
+    pair.best.valid = true;
+    pair.best.objective = objective;
+    spread.pairs.push_back(pair);
+  }
+  EXPECT_EQ(worth(spread, Choose::nominal), 20);
+  EXPECT_EQ(worth(spread, Choose::mean), 24);
+  EXPECT_EQ(worth(spread, Choose::worst), 30);
+  EXPECT_EQ(spread_json(spread, Choose::worst)["rule"],
+            "the best is the candidate with the lowest worst objective over all plants");
+  spread.pairs.back().best.valid = false;
+  EXPECT_EQ(worth(spread, Choose::nominal), 20);
+  EXPECT_TRUE(std::isinf(worth(spread, Choose::mean)));
+  EXPECT_TRUE(std::isinf(worth(spread, Choose::worst)));
 }
 
 }  // namespace

@@ -1,0 +1,101 @@
+#include "planner/trust/confirm.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "planner/base/parallel.hpp"
+#include "planner/drape/result_fields.hpp"
+#include "planner/search/batch_evaluate.hpp"
+#include "planner/search/finalists.hpp"
+#include "planner/trust/setting_runs.hpp"
+
+namespace drapeplan {
+namespace {
+
+/// How many times longer a run takes: there are more cells both ways, and steps are as much shorter.
+double cost(bool cells, double time) {
+  return (cells ? std::pow(kFinerCells, 3) : 1) * time;
+}
+
+/// The finest setting whose runs fit into the time; nothing if there is none that is finer.
+std::optional<FemOptions> finer_setting(const FemOptions& report, double seconds_each,
+                                        const ConfirmOptions& options) {
+  const double slower = std::min(kFinerTime, report.time_scaling);  // 1 where the schedule is played as it is
+  const double side_by_side = thread_count(options.threads) > 1 ? 1 : 2;
+  for (const auto& [cells, time] : {std::pair{true, slower}, {true, 1.0}, {false, slower}}) {
+    if (!cells && !(time > 1)) continue;
+    if (options.seconds > 0 && side_by_side * seconds_each * cost(cells, time) > options.seconds) continue;
+    FemOptions finer = report;
+    if (cells) finer.mesh_size /= kFinerCells;
+    finer.time_scaling /= time;
+    return finer;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+double Confirmation::error(double Score::*part) const {
+  return std::abs(finer.*part - reported.*part);
+}
+
+double Confirmation::gain_error() const {
+  return std::abs(finer_gain() - gain());
+}
+
+std::optional<Confirmation> confirm(const DrapeProblem& problem, const StagedResult& search,
+                                    const ConfirmOptions& options, EvaluationLog& log) {
+  const Candidate& baseline = better_baseline(search);
+  if (search.best_fidelity != kReport || !search.best.outcome.score.valid || !baseline.outcome.score.valid)
+    return std::nullopt;
+  const double each = std::max(search.best.outcome.wall_seconds, baseline.outcome.wall_seconds);
+  const std::optional<FemOptions> finer =
+      finer_setting(problem.definition().fidelities.at(kReport), each, options);
+  if (!finer) return std::nullopt;
+  const Model model = model_of(problem.definition(), *finer);
+  const Evaluate evaluate = [&](const Schedule& schedule, const std::string&) {
+    return outcome_of(problem.run_on(model, schedule));
+  };
+  const std::vector<Outcome> outcomes =
+      make_batch_evaluate(evaluate, log, options.threads, options.design, options.stop)(
+          {search.best.schedule, baseline.schedule}, setting_text(*finer), "confirm");
+  return Confirmation{.options = *finer,
+                      .reported = search.best.outcome.score,
+                      .reported_baseline = baseline.outcome.score,
+                      .finer = outcomes[0].score,
+                      .finer_baseline = outcomes[1].score};
+}
+
+std::string confirmation_text(const Confirmation& confirmation) {
+  const std::string setting = setting_text(confirmation.options);
+  if (!confirmation.finer.valid)
+    return fmt::format("played again with {} it fails: {}", setting, confirmation.finer.reason);
+  std::vector<std::string> parts;
+  for (const ScorePart& part : kScoreParts) {
+    if (!part.leads && part.value != &Score::objective) continue;
+    parts.push_back(fmt::format("{} {}{}{} (reported: {})", part.label, value_text(part, confirmation.finer),
+                                *part.unit == '\0' ? "" : " ", part.unit,
+                                value_text(part, confirmation.reported)));
+  }
+  return fmt::format("played again with {}: {}", setting, fmt::join(parts, ", "));
+}
+
+nlohmann::json confirmation_json(const Confirmation& confirmation) {
+  nlohmann::json errors;
+  for (const ScorePart& part : kScoreParts) {
+    if (part.compared) errors[part.key] = finite(confirmation.error(part.value));
+  }
+  return {{"setting", setting_text(confirmation.options)},
+          {"best", score_json(confirmation.finer)},
+          {"baseline", score_json(confirmation.finer_baseline)},
+          {"errors", std::move(errors)},
+          {"gain", finite(confirmation.gain())},
+          {"gain_confirmed", finite(confirmation.finer_gain())},
+          {"confirmed", confirmation.confirmed()}};
+}
+
+}  // namespace drapeplan

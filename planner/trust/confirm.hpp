@@ -1,0 +1,56 @@
+// The winner of a plan, played once more one fidelity above the reporting one.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "planner/drape/problem.hpp"
+#include "planner/search/evaluation_log.hpp"
+#include "planner/search/stages.hpp"
+
+namespace drapeplan {
+
+/// What is finer in a confirmation: edges of cells are so many times shorter, and the schedule is played at
+/// so much less speed, never slower than it is.
+inline constexpr double kFinerCells = 1.5, kFinerTime = 2;
+
+/// The best schedule and the better baseline at both settings.
+struct Confirmation {
+  FemOptions options;  ///< of the finer one
+  Score reported, reported_baseline;
+  Score finer, finer_baseline;
+
+  /// What a part of the best schedule's score is wrong by, as far as the finer run shows it.
+  [[nodiscard]] double error(double Score::*part) const;
+  /// By how much the best schedule's objective is below the baseline's, as reported and at the finer setting;
+  /// and what the former is wrong by. Both schedules are wrong to the same side, so this is less than what
+  /// each is wrong by.
+  [[nodiscard]] double gain() const { return reported_baseline.objective - reported.objective; }
+  [[nodiscard]] double finer_gain() const { return finer_baseline.objective - finer.objective; }
+  [[nodiscard]] double gain_error() const;
+  [[nodiscard]] bool ran() const { return finer.valid && finer_baseline.valid; }
+  /// The finer gain is larger than that error.
+  [[nodiscard]] bool confirmed() const { return ran() && finer_gain() > gain_error(); }
+};
+
+struct ConfirmOptions {
+  double seconds = 0;        ///< that the runs may take side by side [s]; 0: no limit
+  std::uint64_t design = 0;  ///< of the rig, see candidate_hash
+  int threads = 0;
+  std::function<bool()> stop = {};
+};
+
+/// Cells and time finer, or what of it there is time for, cells first; nothing where there is time for
+/// neither, or the search has no winner at the reporting fidelity.
+/// @throws Interrupted once `stop` says so; what has run is in the log.
+std::optional<Confirmation> confirm(const DrapeProblem& problem, const StagedResult& search,
+                                    const ConfirmOptions& options, EvaluationLog& log);
+
+/// "played again with 6.67 mm cells, ...: largest gap 9.8 mm (reported: 9.95), ...".
+std::string confirmation_text(const Confirmation& confirmation);
+nlohmann::json confirmation_json(const Confirmation& confirmation);
+
+}  // namespace drapeplan
