@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -14,7 +15,6 @@
 #include "planner/cli/process.hpp"
 #include "planner/drape/run_checks.hpp"
 #include "planner/report/run_files.hpp"
-#include "planner/search/finalists.hpp"
 #include "planner/search/interrupted.hpp"
 #include "planner/search/plan.hpp"
 #include "planner/trust/after_search.hpp"
@@ -143,7 +143,7 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
   bool interrupted = result.search.interrupted;
   if (result.best.score.valid && !interrupted) {
     try {
-      look_closer(planned, log, planning, show, result, trust);
+      look_closer(*problem, log, planning, show, result, trust);
     } catch (const Interrupted&) {
       interrupted = true;
     }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "planner/drape/acceptance.hpp"
 #include "planner/drape/result_fields.hpp"
 
 namespace drapeplan {
@@ -34,82 +35,103 @@ const char* fibre_text(Fibre fibre) {
   return fibre == Fibre::warp ? "warp" : "weft";
 }
 
+/// "between grippers [1, 1] and [2, 1]", "beside gripper [1, 1]".
+std::string between_text(const std::vector<int>& grippers, const RigOptions& rig) {
+  return (grippers.size() > 1 ? "between " : "beside ") + grippers_text(grippers, rig);
+}
+
+std::string slack_text(const Fold& fold, const RigOptions& rig) {
+  const std::string where = between_text(fold.grippers, rig);
+  const std::string more = fmt::format(
+      "along the {} the ply is {} longer than the mold below it, which raises an arch of {} "
+      "on {:.0f} mm",
+      fibre_text(fold.fibre), millimetres(fold.slack), millimetres(fold.arch), 1e3 * fold.span);
+  const bool several = fold.grippers.size() > 1;
+  if (fold.kind == FoldKind::slack)
+    return fmt::format("{} {}{}", where, more, several ? ": they landed too near to each other" : "");
+  const std::string late = std::isnan(fold.down)
+                               ? fmt::format("{} is up to the end", several ? "one of these grippers" : "it")
+                           : several ? "the last of these grippers was down"
+                                     : "it was down";
+  return fmt::format(
+      "{} {}; both sides of it lay on the mold by {:.1f} s, before {}: what is too long could not slide out",
+      where, more, fold.sides_down, late);
+}
+
 /// What happens there: a clause.
 std::string cause_text(const Fold& fold, const RigOptions& rig) {
   const std::string grippers = grippers_text(fold.grippers, rig);
   switch (fold.kind) {
+    case FoldKind::bridging: {
+      const std::string where = between_text(fold.grippers, rig);
+      if (fold.slack >= 0)
+        return fmt::format("{} the ply spans a hollow of the mold with a taut {}", where,
+                           fibre_text(fold.fibre));
+      return fmt::format(
+          "{} the {} spans a hollow of the mold as a chord: it is {} shorter than the mold below it", where,
+          fibre_text(fold.fibre), millimetres(-fold.slack));
+    }
     case FoldKind::edge:
       return fmt::format("a margin of the ply that nothing holds down, {:.0f} mm from {}",
                          1e3 * (rig.place(fold.grippers.front()) - fold.at).norm(), grippers);
-    case FoldKind::bridging:
-      return fmt::format(
-          "between {} the {} spans a hollow of the mold as a chord: it is {} shorter than the mold "
-          "below it",
-          grippers, fibre_text(fold.fibre), millimetres(std::max(-fold.slack, 0.0)));
     case FoldKind::held_up:
       return fmt::format("the pad of {} stands {} above the mold itself", grippers,
                          millimetres(fold.pad_gap));
     case FoldKind::pad_rim:
       return fmt::format("the ply shears around the pad of {} but not under it", grippers);
-    case FoldKind::slack:
     case FoldKind::stall:
-      break;
+    case FoldKind::slack:
+      return slack_text(fold, rig);
   }
-  const std::string more = fmt::format(
-      "along the {} the ply is {} longer than the mold below it, which raises an arch of {} on {:.0f} mm",
-      fibre_text(fold.fibre), millimetres(fold.slack), millimetres(arch_height(fold.slack, fold.span)),
-      1e3 * fold.span);
-  if (fold.kind == FoldKind::slack)
-    return fmt::format("between {} {}: they landed too near to each other", grippers, more);
-  return fmt::format(
-      "{}; both sides of it lay on the mold since {:.1f} s, before {}: what is too long could not slide out",
-      more, fold.sides_down,
-      std::isnan(fold.down) ? grippers + " did, which never came down"
-                            : fmt::format("the last of {} did", grippers));
+  return {};
 }
 
 std::string held_text(const Fold& fold, const RigOptions& rig) {
-  if (fold.grippers.empty()) return {};
   std::string text;
   const bool several = fold.grippers.size() > 1;
-  if (fold.kind != FoldKind::held_up && 2 * fold.pad_gap > fold.height)
+  if (fold.kind != FoldKind::held_up && fold.pad_gap > kHeldShare * fold.height)
     text += fmt::format("; a pad there stands {} above the mold", millimetres(fold.pad_gap));
   if (fold.saturated)
-    text += fmt::format("; {} at the limit of force, {:g} N, at the end",
+    text += fmt::format("; at the end {} at the limit of force, {:g} N",
                         several ? "an actuator there is" : "its actuator is", rig.actuator_force_limit);
   return text;
 }
 
+/// Nothing where nobody looked.
 std::string time_text(const Fold& fold) {
-  if (std::isnan(fold.before)) return {};  // nobody looked
+  if (std::isnan(fold.before)) return {};
   if (std::isnan(fold.since)) return "; it has not come to rest by the end";
-  const std::string when = fold.before < fold.since
-                               ? fmt::format("; it stands since {:.1f} to {:.1f} s", fold.before, fold.since)
-                               : fmt::format("; it stands since {:.1f} s", fold.since);
+  const std::string when =
+      fold.before < fold.since
+          ? fmt::format("; the fold stands since {:.1f} to {:.1f} s", fold.before, fold.since)
+          : "; the fold stands since the start";
   if (!(fold.down > 0) || fold.kind == FoldKind::edge || fold.kind == FoldKind::held_up) return when;
-  return fmt::format("{}, the last of these pads is down since {:.1f} s", when, fold.down);
+  return fmt::format("{}, {} down by {:.1f} s", when,
+                     fold.grippers.size() > 1 ? "the last of these pads is" : "its pad is", fold.down);
 }
 
 std::string edge_text(const EdgeMiss& edge, const RigOptions& rig) {
-  std::string text =
-      fmt::format("The edge is farthest off, by {}, at {}: it {} the boundary.", millimetres(edge.offset),
-                  place_text(edge.at), edge.short_of ? "stays short of" : "reaches beyond");
+  const char* side = edge.side == EdgeSide::short_of ? "stays short of"
+                     : edge.side == EdgeSide::beyond ? "reaches beyond"
+                                                     : "stands above";
+  const std::string text = fmt::format("The edge is farthest off, by {}, at {}: it {} the boundary.",
+                                       millimetres(edge.offset), place_text(edge.at), side);
   const std::string name = rig.name(edge.gripper);
   if (edge.by_gripper())
     return text +
            fmt::format(" The grippers put it there: {}, the nearest, is {} off its target to the same side.",
                        name, millimetres(edge.pad_offset));
-  if (edge.pad_offset < -0.5 * edge.offset)
-    return text +
-           fmt::format(
-               " The nearest gripper, {}, is {} off to the other side: the ply between them is stretched or "
-               "sheared by more than both.",
-               name, millimetres(-edge.pad_offset));
+  if (edge.against_gripper())
+    return text + fmt::format(
+                      " The nearest gripper, {}, is {} off its target to the other side: the {:.0f} mm of "
+                      "ply between "
+                      "them are off by more than that.",
+                      name, millimetres(-edge.pad_offset), 1e3 * edge.margin);
   return text +
          fmt::format(
-             " The nearest gripper, {}, is only {} off that way: it is the {:.0f} mm of ply beyond it that "
-             "slid, sheared or folded.",
-             name, millimetres(std::abs(edge.pad_offset)), 1e3 * edge.margin);
+             " It is not its gripper, {}, that is near its target that way (off by {}), but the {:.0f} mm of "
+             "ply beyond it that slid, sheared or folded.",
+             name, millimetres(edge.pad_offset), 1e3 * edge.margin);
 }
 
 std::string effects_text(const std::vector<StrokeEffect>& effects, const RigOptions& rig) {
@@ -134,19 +156,13 @@ nlohmann::json names_json(const std::vector<int>& grippers, const RigOptions& ri
 }
 
 nlohmann::json fold_json(const Fold& fold, const RigOptions& rig) {
-  return {{"kind", key_of(fold.kind)},
-          {"at", {fold.at.x(), fold.at.y()}},
-          {"height", fold.height},
-          {"fibre", fibre_text(fold.fibre)},
-          {"span", fold.span},
-          {"slack", fold.slack},
-          {"grippers", names_json(fold.grippers, rig)},
-          {"pad_gap", fold.pad_gap},
-          {"saturated", fold.saturated},
-          {"since", finite(fold.since)},
-          {"before", finite(fold.before)},
-          {"down", finite(fold.down)},
-          {"sides_down", finite(fold.sides_down)}};
+  return {{"kind", key_of(fold.kind)},   {"at", {fold.at.x(), fold.at.y()}},
+          {"height", fold.height},       {"fibre", fibre_text(fold.fibre)},
+          {"span", fold.span},           {"slack", fold.slack},
+          {"arch", fold.arch},           {"grippers", names_json(fold.grippers, rig)},
+          {"pad_gap", fold.pad_gap},     {"saturated", fold.saturated},
+          {"since", finite(fold.since)}, {"before", finite(fold.before)},
+          {"down", finite(fold.down)},   {"sides_down", finite(fold.sides_down)}};
 }
 
 }  // namespace
@@ -162,7 +178,8 @@ const Fold* Diagnosis::first() const {
 Diagnosis diagnosis_of(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
                        std::vector<StrokeEffect> effects) {
   Diagnosis diagnosis;
-  if (!drape.score.valid) return diagnosis;
+  if (!last_score(drape).valid) return diagnosis;
+  diagnosis.pressed = drape.other.has_value();
   diagnosis.folds = folds_of(problem, drape, fidelity);
   const EdgeMiss edge = edge_miss_of(problem, drape, fidelity);
   if (edge.offset > problem.definition().score.target_boundary_offset) diagnosis.edge = edge;
@@ -175,8 +192,9 @@ std::string diagnosis_text(const Diagnosis& diagnosis, const RigOptions& rig) {
   if (!diagnosis.folds.empty()) {
     const Fold& highest = diagnosis.folds.front();
     sentences.push_back(fmt::format(
-        "The ply is highest, {}, at {} ({}): {}{}{}.", millimetres(highest.height), place_text(highest.at),
-        name_of(highest.kind), cause_text(highest, rig), held_text(highest, rig), time_text(highest)));
+        "{} is highest, {}, at {} ({}): {}{}{}.", diagnosis.pressed ? "After pressing the ply" : "The ply",
+        millimetres(highest.height), place_text(highest.at), name_of(highest.kind), cause_text(highest, rig),
+        held_text(highest, rig), time_text(highest)));
     const Fold* first = diagnosis.first();
     if (first != nullptr && first != &highest)
       sentences.push_back(fmt::format("The first that stands, {} high, is at {} ({}): {}{}.",
@@ -189,53 +207,60 @@ std::string diagnosis_text(const Diagnosis& diagnosis, const RigOptions& rig) {
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 
+namespace {
+
+/// What would change a fold of this kind.
+std::string remedy_of(const Fold& fold, const RigOptions& rig, bool pressed) {
+  const bool closes = rig.interlinks && !rig.interlinks->lengths.empty();
+  const char* press = pressed ? "." : ", or press the ply.";
+  switch (fold.kind) {
+    case FoldKind::bridging:
+      return std::string("A chord needs grippers that come nearer to each other") +
+             (rig.interlinks && !closes ? ": let the interlinks close (grippers.interlinks)" : "") + press;
+    case FoldKind::edge:
+      return std::string("Put grippers nearer to the ply's edge") + press;
+    case FoldKind::held_up:
+      if (!fold.saturated)
+        return "A pad that stands above the mold needs to be commanded lower (schedule.overtravel), or a "
+               "stiffer actuator.";
+      return std::string(
+                 "A pad that its actuator cannot press down needs more force "
+                 "(grippers.actuator_force_limit)") +
+             (rig.interlinks ? ", or interlinks that close or give way (grippers.interlinks)." : ".");
+    case FoldKind::pad_rim:
+      return "Smaller pads (grippers.pad_radius) shear with the ply.";
+    case FoldKind::stall:
+      return "A stall goes where the ply touches the mold later than the grippers around it, or with less "
+             "friction: begin at "
+             "this place.";
+    case FoldKind::slack:
+      return std::string("Slack between grippers goes where they land further apart") +
+             (rig.interlinks
+                  ? ": their heights before they land decide it, as long as the interlinks let them."
+                  : ".");
+  }
+  return {};
+}
+
+std::string remedy_of(const EdgeMiss& edge, const RigOptions& rig) {
+  if (!edge.by_gripper())
+    return "Grippers nearer to the edge, or more of them, hold the margin of the ply in its place.";
+  if (rig.driven == Driven::z)
+    return "The edge follows its grippers, which only heights move in-plane: drapeplan reach shows how near "
+           "they can come.";
+  return "The edge follows its grippers, which are late or too weak for the ply: slower strokes, or more "
+         "force.";
+}
+
+}  // namespace
+
 std::string remedy_text(const Diagnosis& diagnosis, const RigOptions& rig) {
   std::vector<std::string> sentences;
   std::set<FoldKind> told;
-  const bool closes = rig.interlinks && !rig.interlinks->lengths.empty();
   for (const Fold& fold : diagnosis.folds) {
-    if (!told.insert(fold.kind).second) continue;
-    switch (fold.kind) {
-      case FoldKind::edge:
-        sentences.emplace_back("Put grippers nearer to the ply's edge, or press it down.");
-        break;
-      case FoldKind::bridging:
-        sentences.emplace_back(
-            rig.interlinks && !closes
-                ? "A chord needs grippers that come nearer to each other: let the interlinks close "
-                  "(grippers.interlinks), or press the ply."
-                : "A chord needs grippers that land nearer to each other, or a press.");
-        break;
-      case FoldKind::held_up:
-        sentences.emplace_back(
-            fold.saturated && rig.interlinks
-                ? "A pad that its actuator cannot press down is held up by its interlinks: let them close, "
-                  "give way (grippers.interlinks) or use more force (grippers.actuator_force_limit)."
-                : "A pad that stands above the mold needs to be commanded lower (schedule.overtravel) or a "
-                  "stiffer actuator.");
-        break;
-      case FoldKind::pad_rim:
-        sentences.emplace_back("Smaller pads (grippers.pad_radius) shear with the ply.");
-        break;
-      case FoldKind::slack:
-        sentences.emplace_back(
-            rig.interlinks
-                ? "Slack between grippers goes where they land further apart: their heights before they "
-                  "land decide it, as long as the interlinks let them."
-                : "Slack between grippers goes where they land further apart.");
-        break;
-      case FoldKind::stall:
-        sentences.emplace_back(
-            "A stall goes where the ply touches the mold later than the grippers around it, or with less "
-            "friction: begin at this place.");
-        break;
-    }
+    if (told.insert(fold.kind).second) sentences.push_back(remedy_of(fold, rig, diagnosis.pressed));
   }
-  if (diagnosis.edge && diagnosis.edge->by_gripper())
-    sentences.emplace_back(rig.driven == Driven::z
-                               ? "The edge follows its grippers, which only heights move in-plane: "
-                                 "drapeplan reach shows how near they can come."
-                               : "The edge follows its grippers.");
+  if (diagnosis.edge) sentences.push_back(remedy_of(*diagnosis.edge, rig));
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 
@@ -263,7 +288,9 @@ nlohmann::json diagnosis_json(const Diagnosis& diagnosis, const RigOptions& rig)
   if (const auto& edge = diagnosis.edge)
     result["edge"] = {{"at", {edge->at.x(), edge->at.y()}},
                       {"offset", edge->offset},
-                      {"short", edge->short_of},
+                      {"side", edge->side == EdgeSide::short_of ? "short"
+                               : edge->side == EdgeSide::beyond ? "beyond"
+                                                                : "above"},
                       {"gripper", rig.indices(edge->gripper)},
                       {"pad_offset", edge->pad_offset}};
   return result;

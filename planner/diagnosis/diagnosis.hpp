@@ -16,6 +16,7 @@ struct Diagnosis {
   std::vector<Fold> folds;            ///< highest first
   std::optional<EdgeMiss> edge;       ///< where the edge is farther off than allowed
   std::vector<StrokeEffect> effects;  ///< of all grippers; empty where nothing was learned of them
+  bool pressed = false;               ///< it is the ply after pressing
 
   /// Nothing exceeds what the case allows, or nothing was simulated to its end.
   [[nodiscard]] bool good() const { return folds.empty() && !edge; }
@@ -32,7 +33,7 @@ Diagnosis diagnosis_of(const DrapeProblem& problem, const Drape& drape, const st
 /// Empty of a drape that keeps what its case allows.
 std::string diagnosis_text(const Diagnosis& diagnosis, const RigOptions& rig);
 
-/// What would change it, a sentence for each kind of trouble; empty if there is none.
+/// What would change it, a sentence for each kind of fold and one for the edge; empty if there is none.
 std::string remedy_text(const Diagnosis& diagnosis, const RigOptions& rig);
 
 /// Both for the console, a line each; empty if there is nothing to say.

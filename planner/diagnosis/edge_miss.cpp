@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "planner/diagnosis/nearest.hpp"
 #include "planner/score/scoring.hpp"
 
 namespace drapeplan {
@@ -21,20 +22,20 @@ EdgeMiss edge_miss_of(const DrapeProblem& problem, const Drape& drape, const std
   const size_t place =
       size_t(nearest - edge.begin()) % mesh.outline.size();  // the first node ends the edge, too
   miss.at = mesh.rest[size_t(mesh.outline[place])];
-  for (int g = 1; g < rig.count(); ++g) {
-    if ((rig.place(g) - miss.at).norm() < (rig.place(miss.gripper) - miss.at).norm()) miss.gripper = g;
-  }
+  miss.gripper = nearest_gripper(rig, miss.at);
   miss.margin = (rig.place(miss.gripper) - miss.at).norm();
   // The node in the middle of its pad, or of what of the pad is on the ply.
-  const auto middle = std::min_element(mesh.rest.begin(), mesh.rest.end(), [&](const auto& a, const auto& b) {
-    return (a - rig.place(miss.gripper)).squaredNorm() < (b - rig.place(miss.gripper)).squaredNorm();
-  });
-  const Eigen::Vector3d target = mapped_point(map.net, *definition.mold, *middle);
+  const auto middle = size_t(nearest_node(mesh, rig.place(miss.gripper)));
+  const Eigen::Vector3d target = mapped_point(map.net, *definition.mold, mesh.rest[middle]);
   const Eigen::Vector3d off = offset.on_edge - offset.on_boundary;
+  if (offset.max > 0) miss.pad_offset = (drape.run.final.position[middle] - target).dot(off) / offset.max;
+  const Eigen::Vector3d normal = definition.mold->normal(offset.on_boundary.x(), offset.on_boundary.y());
+  const Eigen::Vector3d along = off - off.dot(normal) * normal;
   // Towards the edge from the gripper that is nearest to it is outwards.
-  miss.short_of = off.dot(offset.on_boundary - target) < 0;
-  const Eigen::Vector3d pad_off = drape.run.final.position[size_t(middle - mesh.rest.begin())] - target;
-  if (offset.max > 0) miss.pad_offset = pad_off.dot(off) / offset.max;
+  if (along.norm() < EdgeMiss::kShare * offset.max)
+    miss.side = EdgeSide::above;
+  else
+    miss.side = along.dot(offset.on_boundary - target) < 0 ? EdgeSide::short_of : EdgeSide::beyond;
   return miss;
 }
 

@@ -8,17 +8,22 @@
 
 namespace drapeplan {
 
+enum class EdgeSide { short_of, beyond, above };  ///< of the boundary, or over it
+
 struct EdgeMiss {
   Eigen::Vector2d at{0, 0};  ///< of the ply's edge in the flat ply (u, v) [m]
   double offset = 0;         ///< distance from the boundary [m]
-  bool short_of = false;     ///< the edge lies inside the boundary; false: beyond it
-  int gripper = 0;           ///< the nearest
-  double margin = 0;         ///< how far that one is from `at`, in the flat ply [m]
-  double pad_offset = 0;     ///< how far its pad is from where the mapping wants it, along the offset [m]
+  EdgeSide side = EdgeSide::short_of;
+  int gripper = 0;        ///< the nearest
+  double margin = 0;      ///< how far that one is from `at`, in the flat ply [m]
+  double pad_offset = 0;  ///< how far its pad is from where the mapping wants it, along the offset [m]
 
-  /// The nearest gripper is off by more than half as much, to the same side: it is the rig that misplaces the
-  /// edge, else the ply between gripper and edge.
-  [[nodiscard]] bool by_gripper() const { return pad_offset > 0.5 * offset; }
+  /// Share of the offset from which on the nearest gripper has to do with it.
+  static constexpr double kShare = 0.5;
+  /// The nearest gripper is off to the same side: it is the rig that misplaces the edge.
+  [[nodiscard]] bool by_gripper() const { return pad_offset > kShare * offset; }
+  /// It is off to the other side.
+  [[nodiscard]] bool against_gripper() const { return pad_offset < -kShare * offset; }
 };
 
 /// @param drape  of this problem at this fidelity; it ran to its end.

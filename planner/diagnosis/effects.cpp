@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace drapeplan {
 
@@ -14,6 +15,7 @@ std::vector<StrokeEffect> stroke_effects(const Learned& learned) {
   const auto change = [&](int gripper, double Stroke::*value, double step) {
     Strokes strokes = learned.strokes;
     strokes[size_t(gripper)].*value += step;
+    shift_to_gauge(strokes);
     return learned.objective(strokes) - here;
   };
   std::vector<StrokeEffect> effects;

@@ -2,8 +2,6 @@
 // different.
 #pragma once
 
-#include <array>
-#include <string>
 #include <vector>
 
 #include "planner/search/stages.hpp"
@@ -20,7 +18,8 @@ struct StrokeEffect {
   bool height = false;  ///< of the preshape, above the target; false: the start of the stroke
   double value = 0;     ///< in the schedule [m] or [s]
   double more = 0,
-         less = 0;  ///< expected changes of the objective, one step up and one step down; 0 past a bound
+         less =
+             0;  ///< expected changes of the objective, one step up and one step down, as far as bounds allow
 
   /// The larger change of both: what it costs to get this value wrong.
   [[nodiscard]] double size() const;

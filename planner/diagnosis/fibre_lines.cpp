@@ -17,8 +17,11 @@ size_t slot(Fibre fibre, bool forward) {
 
 }  // namespace
 
-double arch_height(double slack, double span) {
-  return 2 / std::numbers::pi * std::sqrt(std::max(slack, 0.0) * span);
+double arch_height(double slack, double span, double curvature) {
+  if (!(slack > 0) || !(span > 0)) return 0;
+  constexpr double kPi = std::numbers::pi;
+  const double turn = 2 / kPi * curvature * span;
+  return 2 * span / (kPi * kPi) * (turn + std::sqrt(turn * turn + kPi * kPi * slack / span));
 }
 
 FibreLines::FibreLines(const Mesh& mesh) : next_(mesh.rest.size(), {-1, -1, -1, -1}) {
@@ -49,27 +52,26 @@ std::optional<int> FibreLines::next(int node, Fibre fibre, bool forward) const {
   return next < 0 ? std::nullopt : std::optional(next);
 }
 
-FibreSpan FibreLines::span(int node, Fibre fibre, const std::function<bool(int, int)>& goes_on,
+FibreSpan FibreLines::span(int node, Fibre fibre,
+                           const std::function<bool(const std::vector<int>&, int)>& goes_on,
                            const std::vector<Eigen::Vector3d>& position,
                            const std::vector<Eigen::Vector3d>& feet) const {
   FibreSpan span;
   const auto walk = [&](bool forward, bool& at_edge) {
-    std::vector<int> nodes;
-    at_edge = false;
+    std::vector<int> way{node};
     // A line has no more nodes than the mesh: where lines of an outline meet, nothing goes round.
-    for (int at = node; nodes.size() < next_.size();) {
-      const std::optional<int> step = next(at, fibre, forward);
+    while (way.size() <= next_.size()) {
+      const std::optional<int> step = next(way.back(), fibre, forward);
       at_edge = !step;
-      if (!step || !goes_on(at, *step)) break;
-      nodes.push_back(at = *step);
+      if (!step || !goes_on(way, *step)) break;
+      way.push_back(*step);
     }
-    return nodes;
+    return way;
   };
   span.nodes = walk(false, span.from_edge);
   std::reverse(span.nodes.begin(), span.nodes.end());
-  span.nodes.push_back(node);
   const std::vector<int> rest = walk(true, span.to_edge);
-  span.nodes.insert(span.nodes.end(), rest.begin(), rest.end());
+  span.nodes.insert(span.nodes.end(), rest.begin() + 1, rest.end());
   for (size_t k = 1; k < span.nodes.size(); ++k) {
     const auto a = size_t(span.nodes[k - 1]), b = size_t(span.nodes[k]);
     span.ply += (position[b] - position[a]).norm();

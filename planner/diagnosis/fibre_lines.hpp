@@ -26,9 +26,11 @@ struct FibreSpan {
   [[nodiscard]] double slack() const { return ply - below; }
 };
 
-/// Rise of an arch, half a wave of a sine, whose length is by `slack` more than its chord of `span` [m]; to
-/// the second order in rise over span. 0 where there is no slack.
-double arch_height(double slack, double span);
+/// Rise of an arch, half a wave of a sine, over a mold: of the height h at which its slack is
+///   integral of (-curvature h sin + 1/2 (h sin)'^2) = -2/pi curvature h span + pi^2/4 h^2 / span,
+/// to the second order in rise over span. 0 where there is no slack.
+/// @param slack, span  [m].  @param curvature  of the mold along the fibre, > 0 in a hollow [1/m].
+double arch_height(double slack, double span, double curvature = 0);
 
 /// The mesh lines of a ply, which follow its fibres.
 class FibreLines {
@@ -38,9 +40,11 @@ class FibreLines {
   /// The next node along a fibre; nothing at the ply's edge.
   [[nodiscard]] std::optional<int> next(int node, Fibre fibre, bool forward) const;
 
-  /// The fibre through a node, in both directions from node to next node as long as `goes_on` says so.
+  /// The fibre through a node, in both directions as long as `goes_on` says so of the nodes so far, of which
+  /// the given one is the first, and of the next one.
   /// @param position  of nodes [m].  @param feet  of the same on the mold [m].
-  [[nodiscard]] FibreSpan span(int node, Fibre fibre, const std::function<bool(int from, int to)>& goes_on,
+  [[nodiscard]] FibreSpan span(int node, Fibre fibre,
+                               const std::function<bool(const std::vector<int>& way, int to)>& goes_on,
                                const std::vector<Eigen::Vector3d>& position,
                                const std::vector<Eigen::Vector3d>& feet) const;
 

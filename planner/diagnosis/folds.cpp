@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "planner/diagnosis/nearest.hpp"
+#include "planner/drape/acceptance.hpp"
 #include "planner/score/scoring.hpp"
 
 namespace drapeplan {
@@ -15,17 +17,13 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Of two folds that are nearer to each other than this share of the spacing only the higher one counts.
 constexpr double kApart = 0.5;
 /// A fold reaches along its fibre to where the ply is lower than this share of its height, or rises again by
-/// the other one from node to node.
-constexpr double kFoot = 0.1, kRise = 0.02;
-/// A pad that stands above the mold by this share of a fold beside it holds it up.
-constexpr double kHeldShare = 0.5;
+/// the other one above the lowest place on the way.
+constexpr double kFoot = 0.1, kRise = 0.05;
 /// What lies nearer to a pad's centre than this many radii lies at its rim.
 constexpr double kRim = 1.5;
 /// Shear of the ply beside a pad, whose own piece cannot shear, from which a fold at the rim is laid to it:
 /// over the radius of a pad it displaces the ply by a tenth of that radius.
 constexpr double kRimShearDeg = 6;
-/// Share of a fold's height that the slack of a fibre must explain, where the other fibre is a chord.
-constexpr double kExplained = 0.5;
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 /// The later one of two instants; NaN, which is never, is later than all.
@@ -42,110 +40,112 @@ class FoldFinder {
         mesh_(problem.model(fidelity).scene().mesh),
         mold_(*case_.mold),
         lines_(mesh_),
-        bridges_(bridging(mesh_, drape.run.final, mold_)) {
+        bridges_(bridging(mesh_, drape.run.final, mold_)),
+        around_(mesh_.rest.size()) {
     for (const Eigen::Vector3d& place : drape.run.final.position) feet_.push_back(mold_.closest(place).foot);
-    for (int g = 0; g < rig_.count(); ++g) pads_.push_back(nearest_node(rig_.place(g)));
+    for (int g = 0; g < rig_.count(); ++g) pads_.push_back(nearest_node(mesh_, rig_.place(g)));
+    for (const auto& quad : mesh_.quads) {
+      for (const int node : quad)
+        around_[size_t(node)].insert(around_[size_t(node)].end(), quad.begin(), quad.end());
+    }
+    if (drape.frames.empty() || drape.frames.front().time > 0) return;  // nobody looked from the start on
+    for (const Snapshot& frame : drape.frames) instants_.push_back(&frame);
+    if (drape.frames.back().time < drape.run.final.time) instants_.push_back(&drape.run.final);
   }
 
   std::vector<Fold> find() const {
     std::vector<Fold> folds;
-    std::vector<int> order(mesh_.rest.size());
-    std::iota(order.begin(), order.end(), 0);
+    std::vector<int> order;
+    for (int node = 0; node < mesh_.node_count(); ++node) {
+      if (gap(node) > case_.score.target_gap && is_peak(node)) order.push_back(node);
+    }
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return gap(a) > gap(b); });
     for (const int node : order) {
-      if (!(gap(node) > case_.score.target_gap) || int(folds.size()) == kMostFolds) break;
+      if (int(folds.size()) == kMostFolds) break;
       const bool apart = std::all_of(folds.begin(), folds.end(), [&](const Fold& fold) {
         return (fold.at - mesh_.rest[size_t(node)]).norm() >= kApart * rig_.spacing;
       });
-      if (apart && is_peak(node)) folds.push_back(fold_at(node));
+      if (apart) folds.push_back(fold_at(node));
     }
     return folds;
   }
 
  private:
+  struct Instants {
+    double before = kNaN, since = kNaN;
+  };
+
   [[nodiscard]] double gap(int node) const { return drape_.gap[size_t(node)]; }
+  [[nodiscard]] double pad_gap(int gripper) const { return gap(pads_[size_t(gripper)]); }
 
-  /// No neighbour along a fibre is higher: a slope of a higher fold is no fold of its own.
+  /// No node of its elements is higher: a slope of a higher fold is no fold of its own.
   [[nodiscard]] bool is_peak(int node) const {
-    for (const Fibre fibre : {Fibre::warp, Fibre::weft}) {
-      for (const bool forward : {false, true}) {
-        const std::optional<int> next = lines_.next(node, fibre, forward);
-        if (next && gap(*next) > gap(node)) return false;
-      }
-    }
-    return true;
+    const std::vector<int>& around = around_[size_t(node)];
+    return std::none_of(around.begin(), around.end(), [&](int other) { return gap(other) > gap(node); });
   }
 
-  [[nodiscard]] int nearest_node(const Eigen::Vector2d& at) const {
-    const auto nearest = std::min_element(
-        mesh_.rest.begin(), mesh_.rest.end(),
-        [&](const auto& a, const auto& b) { return (a - at).squaredNorm() < (b - at).squaredNorm(); });
-    return int(nearest - mesh_.rest.begin());
+  [[nodiscard]] bool released(int gripper) const {
+    const std::vector<PadState>& pads = drape_.run.state.pads;
+    return size_t(gripper) < pads.size() && pads[size_t(gripper)].released;
   }
 
-  [[nodiscard]] int nearest_gripper(const Eigen::Vector2d& at) const {
-    int nearest = 0;
-    for (int g = 1; g < rig_.count(); ++g) {
-      if ((rig_.place(g) - at).norm() < (rig_.place(nearest) - at).norm()) nearest = g;
-    }
-    return nearest;
-  }
-
-  /// The grippers beside a place of a fibre, one on each side where there are two.
+  /// The grippers on both sides of a place along a fibre, where there are some: of the nearest row the
+  /// nearest one. A gripper that is beside the place, across the fibre, is on neither side.
   [[nodiscard]] std::vector<int> beside(const Eigen::Vector2d& at, Fibre fibre) const {
-    const int along = fibre == Fibre::warp ? 0 : 1;
+    const int along = fibre == Fibre::warp ? 0 : 1, across = 1 - along;
     std::vector<int> found;
     for (const double side : {-1.0, 1.0}) {
       int nearest = -1;
+      const auto off = [&](int g) { return (rig_.place(g) - at).eval(); };
       for (int g = 0; g < rig_.count(); ++g) {
-        if (side * (rig_.place(g)[along] - at[along]) < 0) continue;
-        if (nearest < 0 || (rig_.place(g) - at).norm() < (rig_.place(nearest) - at).norm()) nearest = g;
+        const double way = side * off(g)[along], aside = std::abs(off(g)[across]);
+        if (way <= 0 || (way < rig_.pad_radius && aside > rig_.pad_radius)) continue;
+        if (nearest < 0 || off(g).norm() < off(nearest).norm()) nearest = g;
       }
-      if (nearest >= 0 && (found.empty() || found.front() != nearest)) found.push_back(nearest);
+      if (nearest >= 0) found.push_back(nearest);
     }
+    if (found.empty()) found.push_back(nearest_gripper(rig_, at));
     return found;
   }
 
   /// From valley to valley, or from where the ply is low.
   [[nodiscard]] FibreSpan span_of(int node, Fibre fibre) const {
     const double low = kFoot * gap(node), rise = kRise * gap(node);
-    return lines_.span(
-        node, fibre, [&](int from, int to) { return gap(from) > low && gap(to) < gap(from) + rise; },
-        drape_.run.final.position, feet_);
+    const auto goes_on = [&](const std::vector<int>& way, int to) {
+      double lowest = gap(to);
+      for (const int on : way) lowest = std::min(lowest, gap(on));
+      return gap(way.back()) > low && gap(to) <= lowest + rise;
+    };
+    return lines_.span(node, fibre, goes_on, drape_.run.final.position, feet_);
   }
 
-  [[nodiscard]] double gap_in(const Snapshot& frame, int node) const {
-    const Eigen::Vector3d& place = frame.position[size_t(node)];
-    return std::max(mold_.closest(place).signed_distance - 0.5 * case_.material.thickness, 0.0);
-  }
-
-  /// The first instant from which on `holds` is true of all frames, and the one before it.
+  /// The first instant from which on `holds` is true to the end, and the one before it.
   template <class Holds>
-  [[nodiscard]] std::array<double, 2> since(const Holds& holds) const {
-    std::array<double, 2> found{kNaN, kNaN};
-    for (auto frame = drape_.frames.rbegin(); frame != drape_.frames.rend(); ++frame) {
-      if (!holds(*frame)) {
-        found[1] = frame->time;
-        break;
-      }
-      found[0] = found[1] = frame->time;
+  [[nodiscard]] Instants from_when(const Holds& holds) const {
+    Instants found;
+    for (auto frame = instants_.rbegin(); frame != instants_.rend(); ++frame) {
+      found.before = (*frame)->time;
+      if (!holds(**frame)) break;
+      found.since = (*frame)->time;
     }
     return found;
   }
 
-  /// When a node came down to `height` for good [s].
-  [[nodiscard]] double down(int node, double height) const {
-    return since([&](const Snapshot& frame) { return gap_in(frame, node) <= height; })[0];
+  [[nodiscard]] double gap_in(const Snapshot& frame, int node) const {
+    return std::max(signed_gap(frame.position[size_t(node)], mold_, case_.material.thickness), 0.0);
   }
 
-  /// An end of a span is at the ply's edge and as good as not lower.
-  [[nodiscard]] bool reaches_edge(int node, const FibreSpan& warp, const FibreSpan& weft) const {
-    const double high = kHeldShare * gap(node);
-    for (const FibreSpan* span : {&warp, &weft}) {
-      if (span->from_edge && gap(span->nodes.front()) > high) return true;
-      if (span->to_edge && gap(span->nodes.back()) > high) return true;
-    }
-    return false;
+  /// When a node came down to `height` for good [s].
+  [[nodiscard]] double down(int node, double height) const {
+    return from_when([&](const Snapshot& frame) { return gap_in(frame, node) <= height; }).since;
+  }
+
+  /// An end of a span is at the ply's edge and as good as not lower: nothing supports it there.
+  [[nodiscard]] bool is_free(const FibreSpan& span) const {
+    double highest = 0;
+    for (const int node : span.nodes) highest = std::max(highest, gap(node));
+    const auto high = [&](int end) { return gap(end) > kHeldShare * highest; };
+    return (span.from_edge && high(span.nodes.front())) || (span.to_edge && high(span.nodes.back()));
   }
 
   /// Largest shear of the elements at the rim of a pad [deg].
@@ -160,63 +160,75 @@ class FoldFinder {
     return largest;
   }
 
+  /// Of the mold below a span, along it [1/m].
+  [[nodiscard]] double curvature_below(const FibreSpan& span) const {
+    const Eigen::Vector3d &first = feet_[size_t(span.nodes.front())],
+                          &last = feet_[size_t(span.nodes.back())];
+    const Eigen::Vector3d& middle = feet_[size_t(span.nodes[span.nodes.size() / 2])];
+    return mold_.normal_curvature(middle.x(), middle.y(), (last - first).head<2>());
+  }
+
   [[nodiscard]] Fold fold_at(int node) const {
     Fold fold;
     fold.node = node;
     fold.at = mesh_.rest[size_t(node)];
     fold.height = gap(node);
     const FibreSpan warp = span_of(node, Fibre::warp), weft = span_of(node, Fibre::weft);
-    const Fibre more = warp.slack() >= weft.slack() ? Fibre::warp : Fibre::weft;
-    const FibreSpan& longer = more == Fibre::warp ? warp : weft;
-    const double least = std::min(warp.slack(), weft.slack());
-    const bool arch = arch_height(longer.slack(), longer.below) >= kExplained * fold.height;
-    const bool chord = bridges_[size_t(node)] || longer.slack() <= 0 || (!arch && least < 0);
-    fold.fibre = chord == (more == Fibre::warp) ? Fibre::weft : Fibre::warp;
-    const FibreSpan& span = fold.fibre == Fibre::warp ? warp : weft;
+    const bool warp_more = warp.slack() >= weft.slack();
+    const FibreSpan &more = warp_more ? warp : weft, &less = warp_more ? weft : warp;
+    // There is too little ply where a fibre is taut, or where one lacks more than the other one has too much.
+    const bool chord = (bridges_[size_t(node)] || -less.slack() > more.slack()) && !is_free(less);
+    fold.fibre = chord == warp_more ? Fibre::weft : Fibre::warp;
+    const FibreSpan& span = chord ? less : more;
     fold.span = span.below;
     fold.slack = span.slack();
+    fold.arch = arch_height(fold.slack, fold.span, curvature_below(span));
     fold.grippers = beside(fold.at, fold.fibre);
-    const int nearest = nearest_gripper(fold.at);
+    const int nearest = nearest_gripper(rig_, fold.at);
     const double distance = (rig_.place(nearest) - fold.at).norm();
-    const double nearest_gap = gap(pads_[size_t(nearest)]);
+    const bool held_up = !released(nearest) && pad_gap(nearest) >= kHeldShare * fold.height;
     if (chord) {
       fold.kind = FoldKind::bridging;
-    } else if (reaches_edge(node, warp, weft) && distance > rig_.pad_radius &&
-               nearest_gap < kHeldShare * fold.height) {
+    } else if ((is_free(warp) || is_free(weft)) && distance > rig_.pad_radius && !held_up) {
       fold.kind = FoldKind::edge;
       fold.grippers = {nearest};
-    } else if (nearest_gap >= kHeldShare * fold.height) {
+    } else if (held_up) {
       fold.kind = FoldKind::held_up;
       fold.grippers = {nearest};
     } else if (distance < kRim * rig_.pad_radius && rim_shear(nearest) > kRimShearDeg) {
       fold.kind = FoldKind::pad_rim;
       fold.grippers = {nearest};
     }
-    hold(fold);
+    look_at_times(span, fold);
+    look_at_grippers(fold);
     // Both sides of the arch lay on the mold before the pads did: they were not what pushed it up.
-    fold.sides_down =
-        later(down(span.nodes.front(), kFoot * fold.height), down(span.nodes.back(), kFoot * fold.height));
-    if (fold.kind == FoldKind::slack &&
-        (fold.sides_down < fold.down || (std::isnan(fold.down) && !std::isnan(fold.sides_down))))
-      fold.kind = FoldKind::stall;
+    const bool before_pads =
+        std::isnan(fold.down) ? !std::isnan(fold.sides_down) : fold.sides_down < fold.down;
+    if (fold.kind == FoldKind::slack && before_pads) fold.kind = FoldKind::stall;
     return fold;
   }
 
-  /// What is known of the grippers of a fold, and its times.
-  void hold(Fold& fold) const {
+  void look_at_times(const FibreSpan& span, Fold& fold) const {
+    const double near = std::max(kSettled * fold.height, case_.score.target_gap), low = kFoot * fold.height;
+    const Instants stands = from_when(
+        [&](const Snapshot& frame) { return std::abs(gap_in(frame, fold.node) - fold.height) <= near; });
+    fold.before = stands.before;
+    fold.since = stands.since;
+    const double sides = std::max({low, gap(span.nodes.front()), gap(span.nodes.back())});
+    fold.sides_down = later(down(span.nodes.front(), sides), down(span.nodes.back(), sides));
+    fold.down = 0;
+    for (const int g : fold.grippers)
+      fold.down = later(fold.down, down(pads_[size_t(g)], case_.score.target_gap));
+  }
+
+  void look_at_grippers(Fold& fold) const {
     const std::vector<double>& force = drape_.run.final.actuator_force;
-    fold.down = fold.grippers.empty() ? kNaN : 0;
     for (const int g : fold.grippers) {
-      fold.pad_gap = std::max(fold.pad_gap, gap(pads_[size_t(g)]));
+      if (released(g)) continue;
+      fold.pad_gap = std::max(fold.pad_gap, pad_gap(g));
       if (size_t(g) < force.size() && std::abs(force[size_t(g)]) >= kFull * rig_.actuator_force_limit)
         fold.saturated = true;
-      fold.down = later(fold.down, down(pads_[size_t(g)], case_.score.target_gap));
     }
-    const double near = std::max(kSettled * fold.height, case_.score.target_gap);
-    const auto [stands, before] = since(
-        [&](const Snapshot& frame) { return std::abs(gap_in(frame, fold.node) - fold.height) <= near; });
-    fold.since = stands;
-    fold.before = before;
   }
 
   /// An actuator with this share of its limit is at it: forces are smooth near it.
@@ -229,8 +241,10 @@ class FoldFinder {
   const Mold& mold_;
   FibreLines lines_;
   std::vector<bool> bridges_;
+  std::vector<std::vector<int>> around_;  ///< nodes of the elements of each node
   std::vector<Eigen::Vector3d> feet_;
-  std::vector<int> pads_;  ///< the node in the middle of each
+  std::vector<int> pads_;                  ///< the node in the middle of each
+  std::vector<const Snapshot*> instants_;  ///< from the start to the end; empty: nobody looked
 };
 
 }  // namespace
@@ -272,7 +286,7 @@ const char* key_of(FoldKind kind) {
 }
 
 std::vector<Fold> folds_of(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity) {
-  if (!drape.score.valid) return {};
+  if (!last_score(drape).valid) return {};
   return FoldFinder(problem, drape, fidelity).find();
 }
 

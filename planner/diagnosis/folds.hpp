@@ -31,22 +31,28 @@ struct Fold {
   int node = 0;               ///< its highest node
   Eigen::Vector2d at{0, 0};   ///< where that is in the flat ply (u, v) [m]
   double height = 0;          ///< its gap [m]
-  Fibre fibre = Fibre::warp;  ///< along which the figures below are taken: of a chord the shorter one, else
-                              ///< the longer one
-  double span = 0;            ///< of the mold below the arch [m]
+  Fibre fibre =
+      Fibre::warp;  ///< along which the figures below are taken: that of the chord, else that with more slack
+  double span = 0;  ///< of the mold below the fold [m]
   double slack = 0;           ///< of the ply on this span; below zero it is a chord [m]
-  std::vector<int> grippers;  ///< that hold it: those at the ends of its span, or the one above the mold
-  double pad_gap = 0;         ///< of the highest of these pads [m]
+  double arch = 0;            ///< height to which that slack raises an arch, see arch_height [m]
+  std::vector<int>
+      grippers;        ///< that hold it: those on both sides along the fibre, or the one above the mold
+  double pad_gap = 0;  ///< of the ply under the highest of these pads [m]
   bool saturated = false;     ///< an actuator of these gives all the force that it has at the end
-  double since = 0;           ///< when it came to within `kSettled` of its final height for good [s]
-  double before = 0;          ///< the last instant that was looked at before that; NaN: none was [s]
-  double down = 0;        ///< when the last of its grippers was on the mold; NaN: never, or there is none [s]
-  double sides_down = 0;  ///< when the ply on both sides of it was; NaN: never [s]
+  // Instants are the first of those that were looked at from which on it holds for good. They are NaN where
+  // nobody looked from the start on; the last three also where it never holds.
+  double before = 0;      ///< the last instant before `since` [s]
+  double since = 0;       ///< when it stood, see kSettled [s]
+  double down = 0;        ///< when the last of its grippers was on the mold [s]
+  double sides_down = 0;  ///< when the ply on both sides of it was [s]
 };
 
 /// A fold that is higher or lower than in the end by less than this share, or by less than the allowed gap,
 /// stands.
 inline constexpr double kSettled = 0.2;
+/// A pad that stands above the mold by this share of a fold beside it holds it up.
+inline constexpr double kHeldShare = 0.5;
 /// Most folds that are told apart.
 inline constexpr int kMostFolds = 5;
 

@@ -12,11 +12,6 @@
 namespace drapeplan {
 namespace {
 
-/// The score at the end of the run.
-const Score& last_score(const Drape& drape) {
-  return drape.other && !drape.other->before ? drape.other->score : drape.score;
-}
-
 double share_above(const Mesh& mesh, const std::vector<double>& gap, double allowed) {
   const std::vector<double> areas = nodal_areas(mesh);
   double area = 0, above = 0;
@@ -28,8 +23,11 @@ double share_above(const Mesh& mesh, const std::vector<double>& gap, double allo
 }
 
 std::string missed(const Tolerance& tolerance) {
-  return fmt::format("{} is {:.2f} mm where {:g} mm is allowed ({:.2g} % {})", tolerance.what,
-                     1e3 * tolerance.value, 1e3 * tolerance.allowed, 1e2 * tolerance.share, tolerance.beyond);
+  const double share = 1e2 * tolerance.share;
+  return fmt::format("{} is {:.2f} mm where {:g} mm is allowed ({} % {})", tolerance.what,
+                     1e3 * tolerance.value, 1e3 * tolerance.allowed,
+                     share < 10 ? fmt::format("{:.2g}", share) : fmt::format("{:.0f}", share),
+                     tolerance.beyond);
 }
 
 std::string kept(const Tolerance& tolerance) {
@@ -38,6 +36,10 @@ std::string kept(const Tolerance& tolerance) {
 }
 
 }  // namespace
+
+const Score& last_score(const Drape& drape) {
+  return drape.other && !drape.other->before ? drape.other->score : drape.score;
+}
 
 bool Acceptance::accepted() const {
   return !tolerances.empty() &&

@@ -21,6 +21,9 @@ struct Tolerance {
   [[nodiscard]] bool kept() const { return value <= allowed; }
 };
 
+/// The score at the end of the run: after pressing where the ply was pressed.
+const Score& last_score(const Drape& drape);
+
 /// What a drape is at its end, after pressing where it is pressed.
 struct Acceptance {
   std::vector<Tolerance> tolerances;  ///< of gap and edge; none of a drape that failed

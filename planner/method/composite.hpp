@@ -79,7 +79,7 @@ class CompositeSearch {
       const Eigen::VectorXd& place);
 
  private:
-  /// The model of one batch: what is expected of a place, around the best one.
+  /// A model: what is expected of places around one that was seen.
   struct Expectation;
   [[nodiscard]] double value_of(const Observation& one) const;
   void correct(Eigen::VectorXd correction);

@@ -111,7 +111,7 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result, const Plan
                 {"history", history_json(search)}};
   if (trust.choice) document["numerics"] = choice_json(*trust.choice);
   if (trust.confirmation) document["confirmation"] = confirmation_json(*trust.confirmation);
-  if (trust.spread) document["robust"] = spread_json(*trust.spread, problem.definition().optimise.choose);
+  if (trust.spread) document["robust"] = spread_json(*trust.spread, trust.rule);
   if (result.best.score.valid)
     document["diagnosis"] = diagnosis_json(diagnosis, *problem.definition().grippers);
   return document;

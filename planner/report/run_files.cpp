@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <stdexcept>
 
 #include "planner/base/json_text.hpp"
 #include "planner/base/text.hpp"
@@ -253,7 +252,7 @@ void add_finer_rows(const Confirmation& confirmation, PlanReport& report) {
 
 ReportTable folds_report(const Diagnosis& diagnosis, const RigOptions& rig) {
   ReportTable table{
-      .title = "Folds",
+      .title = {},
       .caption =
           "The highest places, half a spacing of the rig apart at least. Slack is by how much the ply is "
           "longer than the mold below the fold, along the fibre; below zero it is a chord over a hollow.",

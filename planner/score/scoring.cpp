@@ -183,15 +183,16 @@ bool score_gap(const Mesh& mesh, const Snapshot& end, const Mold& mold, double t
 
 }  // namespace
 
+double signed_gap(const Eigen::Vector3d& place, const Mold& mold, double thickness) {
+  const ClosestPoint closest = mold.closest(place);
+  const bool good = closest.converged && std::isfinite(closest.signed_distance);
+  return (good ? closest.signed_distance : place.z() - mold.height(place.x(), place.y())) - 0.5 * thickness;
+}
+
 std::vector<double> signed_gaps(const Snapshot& end, const Mold& mold, double thickness) {
   std::vector<double> gaps;
   gaps.reserve(end.position.size());
-  for (const Eigen::Vector3d& place : end.position) {
-    const ClosestPoint closest = mold.closest(place);
-    const bool good = closest.converged && std::isfinite(closest.signed_distance);
-    gaps.push_back((good ? closest.signed_distance : place.z() - mold.height(place.x(), place.y())) -
-                   0.5 * thickness);
-  }
+  for (const Eigen::Vector3d& place : end.position) gaps.push_back(signed_gap(place, mold, thickness));
   return gaps;
 }
 

@@ -35,6 +35,8 @@ struct RunExtremes {
 std::vector<double> nodal_gaps(const Snapshot& end, const Mold& mold, double thickness);
 /// The same before clipping: negative inside the mold [m].
 std::vector<double> signed_gaps(const Snapshot& end, const Mold& mold, double thickness);
+/// Of one place of the mid-surface [m].
+double signed_gap(const Eigen::Vector3d& place, const Mold& mold, double thickness);
 
 /// Nodes whose gap is a taut fibre over a hollow, not a wrinkle: along warp or weft the mold's normal
 /// curvature at the node's foot is > 0 AND the mean nominal strain of the elements around the node is > 0

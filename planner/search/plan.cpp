@@ -18,8 +18,6 @@
 namespace drapeplan {
 namespace {
 
-constexpr int kFrames = 21;  // of a reported drape, for ParaView: twenty equal parts of the sequence
-
 /// Drapes at the reporting fidelity with their frames, so that pictures need no second run: those of the
 /// baselines and the best so far. All others are dropped at once, whatever the number of evaluations.
 class ReportedDrapes {
@@ -43,7 +41,7 @@ class ReportedDrapes {
   /// The drape of a schedule; run now if it is not kept, or came from the log of an earlier run.
   Drape take(const DrapeProblem& problem, const Schedule& schedule) {
     const auto known = drapes_.find(schedule_hash(schedule));
-    return known != drapes_.end() ? known->second : problem.run(schedule, kReport, kFrames);
+    return known != drapes_.end() ? known->second : problem.run(schedule, kReport, kReportFrames);
   }
 
  private:
@@ -134,7 +132,7 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
     if (const auto refusals = rig_refusals(schedule, *problem.definition().grippers); !refusals.empty())
       throw WrongInput(refusals.front());
     const bool report = fidelity == kReport;
-    Drape drape = report ? problem.run(schedule, fidelity, kFrames)
+    Drape drape = report ? problem.run(schedule, fidelity, kReportFrames)
                          : problem.run_for_objective(schedule, fidelity);
     Outcome outcome = outcome_of(drape);
     outcome.fields = problem.score_fields_of(drape, fidelity);
@@ -156,7 +154,7 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
   const auto take = [&](const Candidate& candidate, const std::string& fidelity) {
     // Interrupted: a run at the fidelity of the search is quick.
     return fidelity == kReport ? reported.take(problem, candidate.schedule)
-                               : problem.run(candidate.schedule, fidelity, kFrames);
+                               : problem.run(candidate.schedule, fidelity, kReportFrames);
   };
   const std::array<std::function<void()>, 3> jobs{
       [&] { result.uniform = take(search.uniform, kReport); },

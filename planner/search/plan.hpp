@@ -16,6 +16,8 @@ namespace drapeplan {
 
 /// The log of a plan in its run folder.
 inline constexpr const char* kEvaluations = "evaluations.jsonl";
+/// Of a reported drape, for ParaView: twenty equal parts of the sequence.
+inline constexpr int kReportFrames = 21;
 
 struct PlanOptions {
   bool resume = false;  ///< continue from the evaluations that the run folder holds

@@ -342,6 +342,7 @@ void StagedSearch::compare(std::vector<Trial> trials, const std::string& stage) 
 
 void StagedSearch::keep_learned() {
   search_.set_level(level_of(kReport));
+  if (!search_.ready()) return;
   for (const Trial& trial : trials_[kReport]) {
     const Eigen::VectorXd place = grippers_.encode(trial.strokes);
     if (schedule_hash(schedule_of(trial)) != schedule_hash(result_.best.schedule) ||

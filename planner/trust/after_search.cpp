@@ -3,42 +3,48 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <utility>
 
 #include "planner/search/finalists.hpp"
+#include "planner/search/interrupted.hpp"
 
 namespace drapeplan {
 namespace {
 
 class AfterSearch {
  public:
-  AfterSearch(const DrapeProblem& problem, EvaluationLog& log, const PlanOptions& options,
+  AfterSearch(const DrapeProblem& given, EvaluationLog& log, const PlanOptions& options,
               const std::function<void(const Progress&)>& progress, PlanResult& result)
-      : problem_(problem), log_(log), options_(options), progress_(progress), result_(result) {}
+      : given_(given),
+        problem_(planned_problem(given, result)),
+        log_(log),
+        options_(options),
+        progress_(progress),
+        result_(result) {}
 
-  void choose_winner() {
+  /// @return the rule by which the winner was chosen.
+  Choose choose_winner() {
     const Choose rule = optimise().choose;
-    if (rule == Choose::nominal) return;
+    if (rule == Choose::nominal) return rule;
     tell("spread");
     const Candidate* winner = nullptr;
-    double lowest = std::numeric_limits<double>::infinity(), nominal = lowest;
+    Worth best, nominal;
     int compared = 0;
     for (const Candidate& candidate : result_.search.finalists) {
       if (!candidate.outcome.score.valid || !candidate.outcome.score.followed) continue;
       if (compared++ == kRobustCandidates) break;
       const std::optional<PlantSpread> spread = spread_of_schedule(candidate.schedule);
-      if (!spread) return;
-      const double value = worth(*spread, rule);
-      if (compared == 1) nominal = value;
-      if (value < lowest) lowest = value, winner = &candidate;
+      if (!spread) {
+        result_.search.message += fmt::format(
+            "; there was no time to choose by the {} objective in plants that differ", name_of(rule));
+        return Choose::nominal;
+      }
+      const Worth worth = worth_of(*spread, rule);
+      if (compared == 1) nominal = worth;
+      if (winner == nullptr || worth.before(best)) best = worth, winner = &candidate;
     }
-    if (winner == nullptr || winner->name == result_.search.best.name) return;
-    const std::string before = result_.search.best.name;
-    declare_best(result_.search, *winner);
-    result_.search.message += fmt::format(
-        "; it was chosen for its {} objective of {:.4g} in plants that differ, where \"{}\" has {:.4g}",
-        rule == Choose::mean ? "mean" : "worst", lowest, before, nominal);
-    result_.search.learned.reset();  // it is of the other one's neighbourhood
-    result_.best = problem_.run(result_.search.best.schedule, kReport, int(result_.best.frames.size()));
+    if (winner != nullptr && winner->name != result_.search.best.name) declare(*winner, best, nominal, rule);
+    return winner == nullptr ? Choose::nominal : rule;
   }
 
   [[nodiscard]] std::optional<Confirmation> confirm_winner() {
@@ -57,6 +63,35 @@ class AfterSearch {
   }
 
  private:
+  /// Makes a finalist that is not the best in the case as it is the winner.
+  void declare(const Candidate& winner, const Worth& worth, const Worth& nominal, Choose rule) {
+    const std::string before = result_.search.best.name;
+    Drape drape = drape_of(winner);
+    declare_best(result_.search, winner);
+    const auto text_of = [](const Worth& one) {
+      return one.failures > 0 ? fmt::format("{:.4g} ({} fail)", one.value, one.failures)
+                              : fmt::format("{:.4g}", one.value);
+    };
+    if (!result_.search.beats_baselines)
+      result_.search.message =
+          fmt::format("in the case as it is, {} does not beat the baselines", winner.name);
+    result_.search.message += fmt::format(
+        "; it was chosen for its {} objective of {} in plants that differ, where \"{}\", the "
+        "best in the case as it is, has {}",
+        name_of(rule), text_of(worth), before, text_of(nominal));
+    result_.search.learned.reset();  // it is of the other one's neighbourhood
+    result_.best = std::move(drape);
+    if (result_.design) compare_changes(given_, winner.schedule, log_, options_.threads, *result_.design);
+  }
+
+  /// With its frames.
+  [[nodiscard]] Drape drape_of(const Candidate& candidate) const {
+    if (candidate.name == result_.search.uniform.name) return result_.uniform;
+    if (candidate.name == result_.search.wave.name) return result_.wave;
+    if (options_.stop && options_.stop()) throw Interrupted();
+    return problem_.run(candidate.schedule, kReport, kReportFrames);
+  }
+
   [[nodiscard]] const OptimiseOptions& optimise() const { return problem_.definition().optimise; }
   [[nodiscard]] std::uint64_t design() const {
     return result_.design ? design_hash(result_.design->overrides) : 0;
@@ -71,12 +106,12 @@ class AfterSearch {
     std::optional<PlantSpread> spread =
         spread_of(problem_, schedule, better_baseline(result_.search).schedule,
                   {.fidelities = fidelities_,
-                   .seconds = seconds_of(kSpreadShare),
+                   .seconds = fidelity_known_ ? 0 : seconds_of(kSpreadShare),
                    .design = design(),
                    .threads = options_.threads,
                    .stop = options_.stop},
                   log_);
-    if (spread) fidelities_ = {spread->fidelity};
+    if (spread) fidelities_ = {spread->fidelity}, fidelity_known_ = true;
     return spread;
   }
 
@@ -88,12 +123,14 @@ class AfterSearch {
                .seconds_left = std::numeric_limits<double>::quiet_NaN()});
   }
 
+  const DrapeProblem& given_;
   const DrapeProblem& problem_;
   EvaluationLog& log_;
   const PlanOptions& options_;
   const std::function<void(const Progress&)>& progress_;
   PlanResult& result_;
   std::vector<std::string> fidelities_ = plan_ladder(problem_.definition());
+  bool fidelity_known_ = false;
 };
 
 }  // namespace
@@ -102,11 +139,16 @@ double share_after_search(const OptimiseOptions& optimise) {
   return kConfirmShare + kSpreadShare * (optimise.choose == Choose::nominal ? 1 : kRobustCandidates);
 }
 
-void look_closer(const DrapeProblem& problem, EvaluationLog& log, const PlanOptions& options,
+void look_closer(const DrapeProblem& given, EvaluationLog& log, const PlanOptions& options,
                  const std::function<void(const Progress&)>& progress, PlanResult& result, PlanTrust& trust) {
-  AfterSearch after(problem, log, options, progress, result);
-  after.choose_winner();
-  if (trust.choice) claim_beyond(trust.choice->chosen.back().objective_error, result.search);
+  const auto claim = [&] {
+    if (trust.choice) claim_beyond(trust.choice->chosen.back().objective_error, result.search);
+  };
+  claim();  // of the best of the search: what follows may be interrupted
+  AfterSearch after(given, log, options, progress, result);
+  const std::string best = result.search.best.name;
+  trust.rule = after.choose_winner();
+  if (result.search.best.name != best) claim();
   trust.confirmation = after.confirm_winner();
   if (trust.confirmation) claim_confirmed(*trust.confirmation, result.search);
   trust.spread = after.spread_of_winner();

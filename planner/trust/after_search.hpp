@@ -18,12 +18,13 @@ inline constexpr int kRobustCandidates = 3;
 /// The share that a search leaves for all of this.
 double share_after_search(const OptimiseOptions& optimise);
 
-/// Where `optimise.choose` says so, the best of the search becomes the finalist that does best in disturbed
-/// plants. Then it is confirmed, claims are checked against errors, and its spread is found.
-/// @param problem  that the drapes of the result are of.  @param result  of a search that was not
-/// interrupted, with a winner.
+/// Where `optimise.choose` says so, and there is time, the best of the search becomes the finalist that does
+/// best in disturbed plants. Then it is confirmed, claims are checked against errors, and its spread is
+/// found.
+/// @param given  the problem of the plan.  @param result  of a search that was not interrupted, with a
+/// winner.
 /// @throws Interrupted; what is known by then is in `result` and `trust`.
-void look_closer(const DrapeProblem& problem, EvaluationLog& log, const PlanOptions& options,
+void look_closer(const DrapeProblem& given, EvaluationLog& log, const PlanOptions& options,
                  const std::function<void(const Progress&)>& progress, PlanResult& result, PlanTrust& trust);
 
 }  // namespace drapeplan

@@ -14,6 +14,7 @@ namespace drapeplan {
 struct PlanTrust {
   std::optional<FidelityChoice> choice;  ///< where the case names no numerical settings
   std::optional<Confirmation> confirmation;  ///< where there was time for it
+  Choose rule = Choose::nominal;             ///< by which the winner was chosen
   std::optional<PlantSpread> spread;     ///< where a schedule was found that runs to its end
 };
 
@@ -22,8 +23,9 @@ struct PlanTrust {
 /// @param error  relative, of objectives at the reporting fidelity.
 void claim_beyond(double error, StagedResult& search);
 
-/// The same of a gain that is no longer there, or less than half as large, one fidelity above the reporting
-/// one.
+/// The same where the finer run does not confirm it: the gain is gone or less than half as large, or the
+/// winner fails or is not followed there. Nothing is taken back where it wins since the rig does not follow
+/// the baselines, or where neither can be played at the finer setting.
 void claim_confirmed(const Confirmation& confirmation, StagedResult& search);
 
 }  // namespace drapeplan

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "planner/base/parallel.hpp"
 #include "planner/drape/result_fields.hpp"
@@ -24,7 +25,7 @@ double cost(bool cells, double time) {
 /// The finest setting whose runs fit into the time; nothing if there is none that is finer.
 std::optional<FemOptions> finer_setting(const FemOptions& report, double seconds_each,
                                         const ConfirmOptions& options) {
-  const double slower = std::min(kFinerTime, report.time_scaling);  // 1 where the schedule is played as it is
+  const double slower = std::clamp(report.time_scaling, 1.0, kFinerTime);  // 1 where it is played as it is
   const double side_by_side = thread_count(options.threads) > 1 ? 1 : 2;
   for (const auto& [cells, time] : {std::pair{true, slower}, {true, 1.0}, {false, slower}}) {
     if (!cells && !(time > 1)) continue;
@@ -56,9 +57,9 @@ std::optional<Confirmation> confirm(const DrapeProblem& problem, const StagedRes
   const std::optional<FemOptions> finer =
       finer_setting(problem.definition().fidelities.at(kReport), each, options);
   if (!finer) return std::nullopt;
-  const Model model = model_of(problem.definition(), *finer);
+  // A model that cannot be built is a failed run, as any other one.
   const Evaluate evaluate = [&](const Schedule& schedule, const std::string&) {
-    return outcome_of(problem.run_on(model, schedule));
+    return outcome_of(problem.run_on(model_of(problem.definition(), *finer), schedule));
   };
   const std::vector<Outcome> outcomes =
       make_batch_evaluate(evaluate, log, options.threads, options.design, options.stop)(
@@ -87,15 +88,18 @@ std::string confirmation_text(const Confirmation& confirmation) {
 nlohmann::json confirmation_json(const Confirmation& confirmation) {
   nlohmann::json errors;
   for (const ScorePart& part : kScoreParts) {
-    if (part.compared) errors[part.key] = finite(confirmation.error(part.value));
+    if (part.compared)
+      errors[part.key] =
+          confirmation.finer.valid ? finite(confirmation.error(part.value)) : nlohmann::json(nullptr);
   }
-  return {{"setting", setting_text(confirmation.options)},
-          {"best", score_json(confirmation.finer)},
-          {"baseline", score_json(confirmation.finer_baseline)},
-          {"errors", std::move(errors)},
-          {"gain", finite(confirmation.gain())},
-          {"gain_confirmed", finite(confirmation.finer_gain())},
-          {"confirmed", confirmation.confirmed()}};
+  return {
+      {"setting", setting_text(confirmation.options)},
+      {"best", score_json(confirmation.finer)},
+      {"baseline", score_json(confirmation.finer_baseline)},
+      {"errors", std::move(errors)},
+      {"gain", finite(confirmation.gain())},
+      {"gain_confirmed", confirmation.ran() ? finite(confirmation.finer_gain()) : nlohmann::json(nullptr)},
+      {"confirmed", confirmation.confirmed()}};
 }
 
 }  // namespace drapeplan

@@ -32,8 +32,14 @@ struct Confirmation {
   [[nodiscard]] double finer_gain() const { return finer_baseline.objective - finer.objective; }
   [[nodiscard]] double gain_error() const;
   [[nodiscard]] bool ran() const { return finer.valid && finer_baseline.valid; }
-  /// The finer gain is larger than that error.
-  [[nodiscard]] bool confirmed() const { return ran() && finer_gain() > gain_error(); }
+  /// The winner, at the finer setting, does what it is told or never did, and is better than the baseline:
+  /// that fails, or the finer gain is larger than what the gain is wrong by.
+  [[nodiscard]] bool confirmed() const {
+    if (!finer.valid || (reported.followed && !finer.followed)) return false;
+    return !finer_baseline.valid || finer_gain() > gain_error();
+  }
+  /// Neither can be played at the finer setting: nothing is known.
+  [[nodiscard]] bool undecided() const { return !finer.valid && !finer_baseline.valid; }
 };
 
 struct ConfirmOptions {

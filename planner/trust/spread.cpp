@@ -162,17 +162,25 @@ std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule
   return spread;
 }
 
-double worth(const PlantSpread& spread, Choose rule) {
-  const auto objective = [](const DisturbedPair& pair) {
-    return pair.best.valid ? pair.best.objective : std::numeric_limits<double>::infinity();
-  };
-  if (rule == Choose::nominal) return objective(spread.pairs.front());
-  double sum = 0, most = -std::numeric_limits<double>::infinity();
-  for (const DisturbedPair& pair : spread.pairs) {
-    sum += objective(pair);
-    most = std::max(most, objective(pair));
+Worth worth_of(const PlantSpread& spread, Choose rule) {
+  Worth worth{0, rule == Choose::mean ? 0 : -std::numeric_limits<double>::infinity()};
+  const size_t counting = rule == Choose::nominal ? 1 : spread.pairs.size();
+  int runs = 0;
+  for (size_t k = 0; k < counting; ++k) {
+    const Score& best = spread.pairs[k].best;
+    if (!best.valid) {
+      ++worth.failures;
+      continue;
+    }
+    ++runs;
+    worth.value = rule == Choose::mean ? worth.value + best.objective : std::max(worth.value, best.objective);
   }
-  return rule == Choose::mean ? sum / double(spread.pairs.size()) : most;
+  if (rule == Choose::mean && runs > 0) worth.value /= runs;
+  return worth;
+}
+
+const char* name_of(Choose rule) {
+  return rule == Choose::mean ? "mean" : rule == Choose::worst ? "worst" : "nominal";
 }
 
 std::string spread_text(const PlantSpread& spread) {

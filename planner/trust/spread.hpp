@@ -61,9 +61,18 @@ std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule
                                      const Schedule& baseline, const SpreadOptions& options,
                                      EvaluationLog& log);
 
-/// What a schedule is worth by a rule: the objective in the undisturbed plant, or the mean or the largest
-/// over all plants; infinite where it fails in one that counts.
-double worth(const PlantSpread& spread, Choose rule);
+/// What a schedule is worth by a rule; fewer failures come first.
+struct Worth {
+  int failures = 0;  ///< in plants that count
+  double value =
+      0;  ///< the objective in the undisturbed plant, or the mean or the largest over all that it runs in
+  [[nodiscard]] bool before(const Worth& other) const {
+    return failures != other.failures ? failures < other.failures : value < other.value;
+  }
+};
+Worth worth_of(const PlantSpread& spread, Choose rule);
+/// "mean"; as in a case file.
+const char* name_of(Choose rule);
 
 /// "in 14 plants that differ (...) its objective is 21.10 to 23.00, worst with ...".
 std::string spread_text(const PlantSpread& spread);

@@ -50,8 +50,9 @@ TEST(Diagnosis, SaysNothingOfADrapeThatIsGoodEnough) {
 }
 
 TEST(StrokeEffects, AreThoseOfTheObjective) {
-  // The objective knows one height and one start alone.
-  const Strokes best(4, Stroke{.start = 1, .duration = 2, .height = 0.03});
+  // The objective knows one height and one start alone, and the smallest start is 0.
+  Strokes best(4, Stroke{.start = 1, .duration = 2, .height = 0.03});
+  best[0].start = 0;
   const Learned learned{best, [](const Strokes& strokes) {
                           const double height = strokes[2].height - 0.03, start = strokes[1].start - 1;
                           return 7 + 1e3 * std::max(height, 0.0) + 0.5 * start * start;
@@ -62,10 +63,13 @@ TEST(StrokeEffects, AreThoseOfTheObjective) {
   EXPECT_TRUE(effects[0].height);
   EXPECT_NEAR(effects[0].more, 5, 1e-9);
   EXPECT_NEAR(effects[0].less, 0, 1e-9);
-  EXPECT_EQ(effects[1].gripper, 1);
-  EXPECT_FALSE(effects[1].height);
-  EXPECT_NEAR(effects[1].size(), 0.125, 1e-9);
-  EXPECT_EQ(effects[2].size(), 0);
+  EXPECT_EQ(effects[1].gripper, 0) << "where the first one starts later, all others start earlier";
+  EXPECT_EQ(effects[2].gripper, 1);
+  for (const size_t k : {1, 2}) {
+    EXPECT_FALSE(effects[k].height);
+    EXPECT_NEAR(effects[k].size(), 0.125, 1e-9);
+  }
+  EXPECT_EQ(effects[3].size(), 0);
 }
 
 }  // namespace

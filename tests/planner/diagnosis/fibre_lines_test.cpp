@@ -61,13 +61,18 @@ TEST(FibreLines, ArchAndSlackBelongTogether) {
       top = n;
   }
   const FibreSpan span = lines.span(
-      top, Fibre::warp, [&](int from, int) { return position[size_t(from)].z() > 0; }, position, feet);
+      top, Fibre::warp,
+      [&](const std::vector<int>& way, int) { return position[size_t(way.back())].z() > 0; }, position, feet);
   EXPECT_FALSE(span.from_edge || span.to_edge);
   EXPECT_NEAR(span.below, kChord, 0.0011);  // to a cell
   EXPECT_NEAR(arch_height(span.slack(), span.below), kRise, 0.01 * kRise);
   EXPECT_EQ(arch_height(-0.001, 0.1), 0);
+  // On a ridge of 0.5 m radius the same arch has more slack, by curvature times its area.
+  EXPECT_NEAR(arch_height(span.slack() + 2 * 2 / std::numbers::pi * kRise * kChord, span.below, -2), kRise,
+              0.02 * kRise);
   const FibreSpan across = lines.span(
-      top, Fibre::weft, [&](int from, int) { return position[size_t(from)].z() > 0; }, position, feet);
+      top, Fibre::weft,
+      [&](const std::vector<int>& way, int) { return position[size_t(way.back())].z() > 0; }, position, feet);
   EXPECT_TRUE(across.from_edge && across.to_edge);
   EXPECT_NEAR(across.slack(), 0, 1e-12);
 }

@@ -44,7 +44,8 @@ TEST(AfterSearch, TheWinnerMayBeTheOneThatIsLeastDisturbed) {
   const Choose rule = Choose::worst;
   Planned plan(rule);
   ASSERT_TRUE(plan.trust.spread.has_value());
-  const double chosen = worth(*plan.trust.spread, rule);
+  const Worth chosen = worth_of(*plan.trust.spread, rule);
+  EXPECT_EQ(plan.trust.rule, rule);
   int compared = 0;
   for (const Candidate& candidate : plan.finalists) {
     if (!candidate.outcome.score.valid || !candidate.outcome.score.followed) continue;
@@ -53,7 +54,7 @@ TEST(AfterSearch, TheWinnerMayBeTheOneThatIsLeastDisturbed) {
         spread_of(plan.problem, candidate.schedule, plan.result.search.uniform.schedule,
                   {.fidelities = {plan.trust.spread->fidelity}}, plan.log)
             .value();
-    EXPECT_LE(chosen, worth(spread, rule)) << candidate.name;
+    EXPECT_FALSE(worth_of(spread, rule).before(chosen)) << candidate.name;
   }
   EXPECT_EQ(plan.result.best.score.objective, plan.result.search.best.outcome.score.objective);
   if (plan.result.search.best.name == plan.finalists.front().name) return;

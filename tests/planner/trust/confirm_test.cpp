@@ -102,6 +102,19 @@ TEST(Confirmation, OfAGainNeedsMoreThanItsError) {
   claim_confirmed(failed, search);
   EXPECT_FALSE(search.beats_baselines);
   EXPECT_NE(search.message.find("it fails: thrown"), std::string::npos) << search.message;
+  EXPECT_TRUE(confirmation_json(failed)["errors"]["max_gap"].is_null());
+  // Where neither can be played nothing is known, and where the baseline alone fails the winner is better.
+  search.beats_baselines = true;
+  failed.finer_baseline = {};
+  claim_confirmed(failed, search);
+  EXPECT_TRUE(search.beats_baselines);
+  failed.finer = confirmation(20, 30).finer;
+  EXPECT_TRUE(failed.confirmed());
+  // The rig must follow it there, too.
+  Confirmation late = confirmation(20, 23);
+  late.finer.followed = false;
+  claim_confirmed(late, search);
+  EXPECT_FALSE(search.beats_baselines);
 }
 
 }  // namespace

@@ -105,15 +105,17 @@ TEST(PlantSpread, IsWorthWhatTheRuleSays) {
     pair.best.objective = objective;
     spread.pairs.push_back(pair);
   }
-  EXPECT_EQ(worth(spread, Choose::nominal), 20);
-  EXPECT_EQ(worth(spread, Choose::mean), 24);
-  EXPECT_EQ(worth(spread, Choose::worst), 30);
+  EXPECT_EQ(worth_of(spread, Choose::nominal).value, 20);
+  EXPECT_EQ(worth_of(spread, Choose::mean).value, 24);
+  EXPECT_EQ(worth_of(spread, Choose::worst).value, 30);
   EXPECT_EQ(spread_json(spread, Choose::worst)["rule"],
             "the best is the candidate with the lowest worst objective over all plants");
+  const Worth all = worth_of(spread, Choose::worst);
   spread.pairs.back().best.valid = false;
-  EXPECT_EQ(worth(spread, Choose::nominal), 20);
-  EXPECT_TRUE(std::isinf(worth(spread, Choose::mean)));
-  EXPECT_TRUE(std::isinf(worth(spread, Choose::worst)));
+  EXPECT_EQ(worth_of(spread, Choose::nominal).failures, 0);
+  EXPECT_EQ(worth_of(spread, Choose::mean).value, 21);
+  EXPECT_EQ(worth_of(spread, Choose::worst).failures, 1);
+  EXPECT_TRUE(all.before(worth_of(spread, Choose::worst))) << "a failure is worse than any objective";
 }
 
 }  // namespace
