@@ -110,6 +110,18 @@ void build_models(const DrapeProblem& problem) {
   for (const std::string& fidelity : fidelities) static_cast<void>(problem.model(fidelity));
 }
 
+/// Which strokes of the best schedule matter, at the cheapest fidelity.
+std::optional<StrokeEffects> effects_of_best(const DrapeProblem& problem, const PlanResult& result,
+                                             EvaluationLog& log, const PlanOptions& planning) {
+  return stroke_effects(problem, result.search.best.strokes,
+                        {.fidelity = plan_ladder(problem.definition()).front(),
+                         .seconds = seconds_of(kEffectsShare, problem.definition().optimise),
+                         .design = design_of(result),
+                         .threads = planning.threads,
+                         .stop = planning.stop},
+                        log);
+}
+
 /// Plans one case into its folder; throws what went wrong.
 PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFolder& out) {
   const auto clock = std::chrono::steady_clock::now();
@@ -126,7 +138,7 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
   const PlanOptions planning{
       .resume = options.resume,
       .threads = options.common.threads,
-      .kept = share_after_search(definition.optimise),
+      .kept = share_after_search(definition.optimise) + kEffectsShare,
       .stop = [] { return InterruptGuard::interrupted(); },
       .moved = [&](const std::filesystem::path& earlier) { print_set_aside(earlier, options.common); }};
   EvaluationLog log = start_log(problem->definition(), out, planning);
@@ -141,18 +153,19 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
   PlanResult result = plan(*problem, log, planning, show);
   const DrapeProblem& planned = planned_problem(*problem, result);
   bool interrupted = result.search.interrupted;
+  std::optional<StrokeEffects> effects;
   if (result.best.score.valid && !interrupted) {
     try {
       look_closer(*problem, log, planning, show, result, trust);
+      effects = effects_of_best(planned, result, log, planning);
     } catch (const Interrupted&) {
       interrupted = true;
     }
   }
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   print_warnings(drape_warnings(planned, result.best, result.search.best_fidelity), options.common);
-  const Diagnosis diagnosis = diagnosis_of(
-      planned, result.best, result.search.best_fidelity,
-      result.search.learned ? stroke_effects(*result.search.learned) : std::vector<StrokeEffect>{});
+  const Diagnosis diagnosis =
+      diagnosis_of(planned, result.best, result.search.best_fidelity, std::move(effects));
   if (result.best.score.valid)
     write_plan(out.path(), planned, result, trust, diagnosis);  // no schedule for a robot from failed runs
   json document = plan_json(planned, result, trust, diagnosis);

@@ -134,19 +134,21 @@ std::string edge_text(const EdgeMiss& edge, const RigOptions& rig) {
              name, millimetres(edge.pad_offset), 1e3 * edge.margin);
 }
 
-std::string effects_text(const std::vector<StrokeEffect>& effects, const RigOptions& rig) {
+std::string effects_text(const StrokeEffects& effects, const RigOptions& rig) {
   std::vector<std::string> named;
-  for (size_t k = 0; k < std::min(effects.size(), kNamed); ++k) {
-    const StrokeEffect& effect = effects[k];
-    if (!(effect.size() > kNamedShare * effects.front().size())) break;
-    named.push_back(fmt::format("the {} of {} ({:.2f})", effect.height ? "height" : "start",
-                                rig.name(effect.gripper), effect.size()));
+  const double largest = effects.values.front().size();
+  for (size_t k = 0; k < std::min(effects.values.size(), kNamed); ++k) {
+    const StrokeEffect& effect = effects.values[k];
+    if (!(effect.size() > 0 && effect.size() >= kNamedShare * largest)) break;
+    const double change = std::abs(effect.more) == effect.size() ? effect.more : effect.less;
+    named.push_back(fmt::format("the {} of {} ({:+.2f})", effect.height ? "height" : "start",
+                                rig.name(effect.gripper), change));
   }
   if (named.empty()) return {};
   return fmt::format(
-      "What matters most of the schedule is {}; in brackets, by how much the objective is expected to "
-      "change where this alone is {:g} mm or {:g} s off.",
-      fmt::join(named, ", "), 1e3 * kHeightStep, kStartStep);
+      "What matters most of the schedule is {}; in brackets, the change of the objective at `{}` where this "
+      "alone is {:g} mm or {:g} s off.",
+      fmt::join(named, ", "), effects.fidelity, 1e3 * kHeightStep, kStartStep);
 }
 
 nlohmann::json names_json(const std::vector<int>& grippers, const RigOptions& rig) {
@@ -176,7 +178,7 @@ const Fold* Diagnosis::first() const {
 }
 
 Diagnosis diagnosis_of(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
-                       std::vector<StrokeEffect> effects) {
+                       std::optional<StrokeEffects> effects) {
   Diagnosis diagnosis;
   if (!last_score(drape).valid) return diagnosis;
   diagnosis.pressed = drape.other.has_value();
@@ -202,8 +204,8 @@ std::string diagnosis_text(const Diagnosis& diagnosis, const RigOptions& rig) {
                                       cause_text(*first, rig), time_text(*first)));
   }
   if (diagnosis.edge) sentences.push_back(edge_text(*diagnosis.edge, rig));
-  if (std::string effects = effects_text(diagnosis.effects, rig); !effects.empty() && !diagnosis.good())
-    sentences.push_back(std::move(effects));
+  if (diagnosis.effects && !diagnosis.good()) sentences.push_back(effects_text(*diagnosis.effects, rig));
+  std::erase(sentences, std::string());
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 
@@ -275,16 +277,19 @@ std::string reasons_text(const Diagnosis& diagnosis, const RigOptions& rig) {
 nlohmann::json diagnosis_json(const Diagnosis& diagnosis, const RigOptions& rig) {
   nlohmann::json folds = nlohmann::json::array(), effects = nlohmann::json::array();
   for (const Fold& fold : diagnosis.folds) folds.push_back(fold_json(fold, rig));
-  for (const StrokeEffect& effect : diagnosis.effects)
-    effects.push_back({{"gripper", rig.indices(effect.gripper)},
-                       {"of", effect.height ? "height" : "start"},
-                       {"value", effect.value},
-                       {"more", effect.more},
-                       {"less", effect.less}});
+  if (diagnosis.effects) {
+    for (const StrokeEffect& effect : diagnosis.effects->values)
+      effects.push_back({{"gripper", rig.indices(effect.gripper)},
+                         {"of", effect.height ? "height" : "start"},
+                         {"value", effect.value},
+                         {"more", finite(effect.more)},
+                         {"less", finite(effect.less)}});
+  }
   nlohmann::json result{{"text", diagnosis_text(diagnosis, rig)},
                         {"remedy", remedy_text(diagnosis, rig)},
                         {"folds", std::move(folds)},
                         {"effects", std::move(effects)}};
+  if (diagnosis.effects) result["effects_fidelity"] = diagnosis.effects->fidelity;
   if (const auto& edge = diagnosis.edge)
     result["edge"] = {{"at", {edge->at.x(), edge->at.y()}},
                       {"offset", edge->offset},

@@ -15,7 +15,7 @@ namespace drapeplan {
 struct Diagnosis {
   std::vector<Fold> folds;            ///< highest first
   std::optional<EdgeMiss> edge;       ///< where the edge is farther off than allowed
-  std::vector<StrokeEffect> effects;  ///< of all grippers; empty where nothing was learned of them
+  std::optional<StrokeEffects> effects;  ///< where they were simulated
   bool pressed = false;               ///< it is the ply after pressing
 
   /// Nothing exceeds what the case allows, or nothing was simulated to its end.
@@ -25,9 +25,8 @@ struct Diagnosis {
 };
 
 /// What is wrong with a drape. @param drape  of this problem at this fidelity, with frames.
-/// @param effects  of the search that found it; may be empty.
 Diagnosis diagnosis_of(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
-                       std::vector<StrokeEffect> effects = {});
+                       std::optional<StrokeEffects> effects = {});
 
 /// One paragraph: the highest fold and what holds it, the first fold, the edge, the strokes that matter.
 /// Empty of a drape that keeps what its case allows.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -158,18 +157,8 @@ Eigen::VectorXd CompositeSearch::best_place() const {
   return best()->place;
 }
 
-std::function<double(const Eigen::VectorXd&)> CompositeSearch::expected_near(const Eigen::VectorXd& place) {
-  for (const Observation& one : seen_) {
-    if (one.level != level_ || one.place != place) continue;
-    return [e = std::make_shared<const Expectation>(expectation(one))](const Eigen::VectorXd& at) {
-      return e->at(at);
-    };
-  }
-  throw std::logic_error("CompositeSearch::expected_near: the place was not seen");
-}
-
-CompositeSearch::Expectation CompositeSearch::expectation(const Observation& around) {
-  Expectation e{around, {}, {}, correction_, {}, {}};
+CompositeSearch::Expectation CompositeSearch::expectation() {
+  Expectation e{*best(), {}, {}, correction_, {}, {}};
   if (correction_.size() == 0) e.correction = Eigen::VectorXd::Zero(scale_.size() + 1);
   const auto distance2 = [&](const Observation* one) { return (one->place - e.around.place).squaredNorm(); };
   std::vector<const Observation*> near;
@@ -247,7 +236,7 @@ Eigen::VectorXd CompositeSearch::beside(const Eigen::VectorXd& point, const Sear
 Eigen::MatrixXd CompositeSearch::ask(const SearchSpace& space, int count) {
   if (!ready()) throw std::logic_error("CompositeSearch::ask: there is nothing to learn from");
   Eigen::MatrixXd batch(space.dimension, count > 0 ? count : batch_);
-  const Expectation e = expectation(*best());
+  const Expectation e = expectation();
   before_ = value_of(e.around);
   batch.col(0) = minimise(e, space, radius_);
   if (batch.cols() > 1) batch.col(1) = minimise(e, space, 0.5 * radius_);

@@ -73,19 +73,15 @@ class CompositeSearch {
   /// Of the places seen at this level the one with the lowest (corrected) value. @throws std::logic_error if
   /// there is none.
   [[nodiscard]] Eigen::VectorXd best_place() const;
-  /// What the model expects of places near one that was seen at this level. It outlives the search, not the
-  /// objective that the search was given. @throws std::logic_error if the place was not seen.
-  [[nodiscard]] std::function<double(const Eigen::VectorXd& place)> expected_near(
-      const Eigen::VectorXd& place);
 
  private:
-  /// A model: what is expected of places around one that was seen.
+  /// The model of one batch: what is expected of a place, around the best one.
   struct Expectation;
   [[nodiscard]] double value_of(const Observation& one) const;
   void correct(Eigen::VectorXd correction);
   /// Of those at the searched level the lowest corrected value; null if there is none.
   [[nodiscard]] const Observation* best() const;
-  [[nodiscard]] Expectation expectation(const Observation& around);
+  [[nodiscard]] Expectation expectation();
   [[nodiscard]] Eigen::VectorXd minimise(const Expectation& expectation, const SearchSpace& space,
                                          double radius);
   [[nodiscard]] Eigen::VectorXd minimise_over(const Expectation& expectation, const SearchSpace& space,

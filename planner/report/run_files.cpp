@@ -279,11 +279,12 @@ ReportReasons reasons_report(const DrapeProblem& problem, const Drape& drape, co
   DrapePanel panel = drape_panel(problem, drape, fidelity, "why");
   panel.subtitle.clear();
   for (const Fold& fold : diagnosis.folds) panel.folds.push_back(panel.position[size_t(fold.node)]);
-  if (!diagnosis.effects.empty()) {
+  if (diagnosis.effects) {
     panel.weights.assign(size_t(rig.count()), 0.0);
-    for (const StrokeEffect& effect : diagnosis.effects) {
+    const double largest = diagnosis.effects->values.front().size();
+    for (const StrokeEffect& effect : diagnosis.effects->values) {
       double& weight = panel.weights[size_t(effect.gripper)];
-      weight = std::max(weight, effect.size() / diagnosis.effects.front().size());
+      if (effect.size() > 0) weight = std::max(weight, effect.size() / largest);
     }
   }
   return {

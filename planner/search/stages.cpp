@@ -77,7 +77,6 @@ class StagedSearch {
       }
       search_reports();
       conclude(result_);
-      keep_learned();
     } catch (const Interrupted&) {
       conclude_early();
     }
@@ -108,7 +107,6 @@ class StagedSearch {
                                 const std::string& stage, bool report = false);
   void record(const Trial& trial, const std::string& fidelity, const std::string& stage);
   const Trial* best_at(const std::string& fidelity) const;
-  void keep_learned();
   void conclude_early();
 
   const SequenceFrame& frame_;
@@ -337,23 +335,7 @@ int StagedSearch::level_of(const std::string& fidelity) const {
 void StagedSearch::compare(std::vector<Trial> trials, const std::string& stage) {
   const std::vector<Outcome> outcomes = evaluate(trials, kReport, stage, true);
   for (size_t k = 0; k < trials.size(); ++k)
-    result_.finalists.push_back({trials[k].name, schedule_of(trials[k]), outcomes[k]});
-}
-
-void StagedSearch::keep_learned() {
-  search_.set_level(level_of(kReport));
-  if (!search_.ready()) return;
-  for (const Trial& trial : trials_[kReport]) {
-    const Eigen::VectorXd place = grippers_.encode(trial.strokes);
-    if (schedule_hash(schedule_of(trial)) != schedule_hash(result_.best.schedule) ||
-        !std::isfinite(search_.value_at(place)))
-      continue;
-    result_.learned = {trial.strokes,
-                       [family = grippers_, expected = search_.expected_near(place)](const Strokes& strokes) {
-                         return expected(family.encode(strokes));
-                       }};
-    return;
-  }
+    result_.finalists.push_back({trials[k].name, schedule_of(trials[k]), outcomes[k], trials[k].strokes});
 }
 
 void StagedSearch::conclude_early() {
@@ -370,7 +352,7 @@ void StagedSearch::conclude_early() {
       return ranks_before(a.standing, b.standing);
     });
     if (best == list.end() || !best->ran()) continue;
-    result_.best = {best->name, schedule_of(*best), {}};
+    result_.best = {best->name, schedule_of(*best), {}, best->strokes};
     result_.best_fidelity = *fidelity;
     break;
   }

@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +32,7 @@ struct Candidate {
   std::string name;  ///< "uniform", "wave", or the stage it is from and its number there, e.g. "gripper 113"
   Schedule schedule;
   Outcome outcome;
+  Strokes strokes = {};  ///< that the schedule is made of
 };
 
 /// One evaluation as the search saw it. Searches that run side by side are listed in turns.
@@ -46,14 +46,6 @@ struct HistoryEntry {
   double best_so_far = 0;  ///< lowest valid objective at this fidelity; infinite if there is none
 };
 
-/// What a search has learned of the neighbourhood of its best schedule.
-struct Learned {
-  Strokes strokes;  ///< of the best schedule
-  /// Expected at the reporting fidelity of strokes near these. Not to be used once the problem is gone whose
-  /// objective the search was given.
-  std::function<double(const Strokes&)> objective;
-};
-
 struct StagedResult {
   Candidate uniform, wave;  ///< the baselines, at the reporting fidelity
   /// The best at the reporting fidelity whose commands were followed; a baseline if nothing beats them. Of an
@@ -64,9 +56,6 @@ struct StagedResult {
   bool beats_baselines = false;
   bool interrupted = false;
   std::string message;  ///< the outcome in a sentence
-  /// Absent where the best schedule is none of those that were searched, as some baselines, or the search was
-  /// interrupted.
-  std::optional<Learned> learned;
   std::vector<HistoryEntry> history;
   int evaluations = 0;  ///< different (schedule, fidelity) pairs
   int failed_evaluations = 0;

@@ -50,8 +50,8 @@ class AfterSearch {
   [[nodiscard]] std::optional<Confirmation> confirm_winner() {
     tell("confirm");
     return confirm(problem_, result_.search,
-                   {.seconds = seconds_of(kConfirmShare),
-                    .design = design(),
+                   {.seconds = seconds_of(kConfirmShare, optimise()),
+                    .design = design_of(result_),
                     .threads = options_.threads,
                     .stop = options_.stop},
                    log_);
@@ -79,7 +79,6 @@ class AfterSearch {
         "; it was chosen for its {} objective of {} in plants that differ, where \"{}\", the "
         "best in the case as it is, has {}",
         name_of(rule), text_of(worth), before, text_of(nominal));
-    result_.search.learned.reset();  // it is of the other one's neighbourhood
     result_.best = std::move(drape);
     if (result_.design) compare_changes(given_, winner.schedule, log_, options_.threads, *result_.design);
   }
@@ -93,21 +92,13 @@ class AfterSearch {
   }
 
   [[nodiscard]] const OptimiseOptions& optimise() const { return problem_.definition().optimise; }
-  [[nodiscard]] std::uint64_t design() const {
-    return result_.design ? design_hash(result_.design->overrides) : 0;
-  }
-  /// 0: there is no limit.
-  [[nodiscard]] double seconds_of(double share) const {
-    return optimise().evaluations > 0 ? 0 : share * optimise().budget;
-  }
-
   /// The first that is asked for decides at which fidelity: all are compared at one.
   [[nodiscard]] std::optional<PlantSpread> spread_of_schedule(const Schedule& schedule) {
     std::optional<PlantSpread> spread =
         spread_of(problem_, schedule, better_baseline(result_.search).schedule,
                   {.fidelities = fidelities_,
-                   .seconds = fidelity_known_ ? 0 : seconds_of(kSpreadShare),
-                   .design = design(),
+                   .seconds = fidelity_known_ ? 0 : seconds_of(kSpreadShare, optimise()),
+                   .design = design_of(result_),
                    .threads = options_.threads,
                    .stop = options_.stop},
                   log_);
@@ -134,6 +125,14 @@ class AfterSearch {
 };
 
 }  // namespace
+
+double seconds_of(double share, const OptimiseOptions& optimise) {
+  return optimise.evaluations > 0 ? 0 : share * optimise.budget;
+}
+
+std::uint64_t design_of(const PlanResult& result) {
+  return result.design ? design_hash(result.design->overrides) : 0;
+}
 
 double share_after_search(const OptimiseOptions& optimise) {
   return kConfirmShare + kSpreadShare * (optimise.choose == Choose::nominal ? 1 : kRobustCandidates);

@@ -2,6 +2,7 @@
 // be claimed.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
 #include "planner/search/plan.hpp"
@@ -14,6 +15,11 @@ namespace drapeplan {
 inline constexpr double kConfirmShare = 0.1, kSpreadShare = 0.05;
 /// So many schedules are compared in disturbed plants where these decide (`optimise.choose`).
 inline constexpr int kRobustCandidates = 3;
+
+/// Seconds of a share of a budget; 0 where it is no time: there is no limit.
+double seconds_of(double share, const OptimiseOptions& optimise);
+/// Of the rig that a plan's schedules are for, see candidate_hash; 0: the case's.
+std::uint64_t design_of(const PlanResult& result);
 
 /// The share that a search leaves for all of this.
 double share_after_search(const OptimiseOptions& optimise);

@@ -44,32 +44,36 @@ TEST(Diagnosis, SaysNothingOfADrapeThatIsGoodEnough) {
   const DrapeProblem problem(std::move(loose));
   const Drape drape = problem.run(to_schedule(problem.frame(), uniform_strokes(problem.frame())), kReport, 3);
   const RigOptions& rig = *problem.definition().grippers;
-  const Diagnosis diagnosis = diagnosis_of(problem, drape, kReport, {{.gripper = 0, .more = 1, .less = 1}});
+  const Diagnosis diagnosis =
+      diagnosis_of(problem, drape, kReport, StrokeEffects{"screen", {{.gripper = 0, .more = 1, .less = 1}}});
   EXPECT_EQ(diagnosis_text(diagnosis, rig), "");
   EXPECT_EQ(remedy_text(diagnosis, rig), "");
 }
 
-TEST(StrokeEffects, AreThoseOfTheObjective) {
-  // The objective knows one height and one start alone, and the smallest start is 0.
-  Strokes best(4, Stroke{.start = 1, .duration = 2, .height = 0.03});
-  best[0].start = 0;
-  const Learned learned{best, [](const Strokes& strokes) {
-                          const double height = strokes[2].height - 0.03, start = strokes[1].start - 1;
-                          return 7 + 1e3 * std::max(height, 0.0) + 0.5 * start * start;
-                        }};
-  const std::vector<StrokeEffect> effects = stroke_effects(learned);
-  ASSERT_EQ(effects.size(), 8u);
-  EXPECT_EQ(effects[0].gripper, 2);
-  EXPECT_TRUE(effects[0].height);
-  EXPECT_NEAR(effects[0].more, 5, 1e-9);
-  EXPECT_NEAR(effects[0].less, 0, 1e-9);
-  EXPECT_EQ(effects[1].gripper, 0) << "where the first one starts later, all others start earlier";
-  EXPECT_EQ(effects[2].gripper, 1);
-  for (const size_t k : {1, 2}) {
-    EXPECT_FALSE(effects[k].height);
-    EXPECT_NEAR(effects[k].size(), 0.125, 1e-9);
-  }
-  EXPECT_EQ(effects[3].size(), 0);
+TEST(StrokeEffects, AreChangesOfTheSimulatedObjective) {
+  const DrapeProblem problem(coarse_case());
+  const Strokes strokes = wave_strokes(problem.frame());
+  EvaluationLog log, other;
+  const StrokeEffects effects =
+      stroke_effects(problem, strokes, {.fidelity = kReport, .threads = 1}, log).value();
+  ASSERT_EQ(effects.values.size(), 2 * strokes.size());
+  const double here = problem.run(to_schedule(problem.frame(), strokes), kReport).score.objective;
+  const StrokeEffect& first = effects.values.front();
+  Strokes changed = strokes;
+  (first.height ? changed[size_t(first.gripper)].height : changed[size_t(first.gripper)].start) +=
+      first.height ? kHeightStep : kStartStep;
+  shift_to_gauge(changed);
+  EXPECT_EQ(problem.run(to_schedule(problem.frame(), changed), kReport).score.objective - here, first.more);
+  for (size_t k = 1; k < effects.values.size(); ++k)
+    EXPECT_GE(effects.values[k - 1].size(), effects.values[k].size());
+  // Any number of threads, and the log, give the same.
+  const StrokeEffects again =
+      stroke_effects(problem, strokes, {.fidelity = kReport, .threads = 2}, other).value();
+  const int runs = log.size();
+  stroke_effects(problem, strokes, {.fidelity = kReport, .threads = 1}, log);
+  EXPECT_EQ(log.size(), runs) << "all was served from the log";
+  for (size_t k = 0; k < effects.values.size(); ++k) EXPECT_EQ(again.values[k].more, effects.values[k].more);
+  EXPECT_FALSE(stroke_effects(problem, strokes, {.fidelity = kReport, .seconds = 1e-9}, other).has_value());
 }
 
 }  // namespace
