@@ -127,11 +127,11 @@ std::string edge_text(const EdgeMiss& edge, const RigOptions& rig) {
                       "ply between "
                       "them are off by more than that.",
                       name, millimetres(-edge.pad_offset), 1e3 * edge.margin);
-  return text +
-         fmt::format(
-             " It is not its gripper, {}, that is near its target that way (off by {}), but the {:.0f} mm of "
-             "ply beyond it that slid, sheared or folded.",
-             name, millimetres(edge.pad_offset), 1e3 * edge.margin);
+  return text + fmt::format(
+                    " Its nearest gripper, {}, is not far from its target that way ({}): the {:.0f} mm of "
+                    "ply beyond it "
+                    "slid, sheared or folded.",
+                    name, millimetres(edge.pad_offset), 1e3 * edge.margin);
 }
 
 std::string effects_text(const StrokeEffects& effects, const RigOptions& rig) {
