@@ -113,12 +113,8 @@ void build_models(const DrapeProblem& problem) {
 /// Which strokes of the best schedule matter, at the cheapest fidelity.
 std::optional<StrokeEffects> effects_of_best(const DrapeProblem& problem, const PlanResult& result,
                                              EvaluationLog& log, const PlanOptions& planning) {
-  return stroke_effects(problem, result.search.best.strokes,
-                        {.fidelity = plan_ladder(problem.definition()).front(),
-                         .seconds = seconds_of(kEffectsShare, problem.definition().optimise),
-                         .design = design_of(result),
-                         .threads = planning.threads,
-                         .stop = planning.stop},
+  return stroke_effects(problem, result.search.best.strokes, plan_ladder(problem.definition()).front(),
+                        runs_after_search(kEffectsShare, problem.definition().optimise, result, planning),
                         log);
 }
 
@@ -138,8 +134,12 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
   const PlanOptions planning{
       .resume = options.resume,
       .threads = options.common.threads,
-      .kept = share_after_search(definition.optimise) + kEffectsShare,
       .stop = [] { return InterruptGuard::interrupted(); },
+      .kept =
+          [&](double each) {
+            return seconds_after_search(definition, each, options.common.threads) +
+                   kEffectsShare * definition.optimise.budget;
+          },
       .moved = [&](const std::filesystem::path& earlier) { print_set_aside(earlier, options.common); }};
   EvaluationLog log = start_log(problem->definition(), out, planning);
   PlanTrust trust;

@@ -158,13 +158,20 @@ nlohmann::json names_json(const std::vector<int>& grippers, const RigOptions& ri
 }
 
 nlohmann::json fold_json(const Fold& fold, const RigOptions& rig) {
-  return {{"kind", key_of(fold.kind)},   {"at", {fold.at.x(), fold.at.y()}},
-          {"height", fold.height},       {"fibre", fibre_text(fold.fibre)},
-          {"span", fold.span},           {"slack", fold.slack},
-          {"arch", fold.arch},           {"grippers", names_json(fold.grippers, rig)},
-          {"pad_gap", fold.pad_gap},     {"saturated", fold.saturated},
-          {"since", finite(fold.since)}, {"before", finite(fold.before)},
-          {"down", finite(fold.down)},   {"sides_down", finite(fold.sides_down)}};
+  return {{"kind", words_of(fold.kind).key},
+          {"at", {fold.at.x(), fold.at.y()}},
+          {"height", fold.height},
+          {"fibre", fibre_text(fold.fibre)},
+          {"span", fold.span},
+          {"slack", fold.slack},
+          {"arch", fold.arch},
+          {"grippers", names_json(fold.grippers, rig)},
+          {"pad_gap", fold.pad_gap},
+          {"saturated", fold.saturated},
+          {"since", finite(fold.since)},
+          {"before", finite(fold.before)},
+          {"down", finite(fold.down)},
+          {"sides_down", finite(fold.sides_down)}};
 }
 
 }  // namespace
@@ -195,13 +202,13 @@ std::string diagnosis_text(const Diagnosis& diagnosis, const RigOptions& rig) {
     const Fold& highest = diagnosis.folds.front();
     sentences.push_back(fmt::format(
         "{} is highest, {}, at {} ({}): {}{}{}.", diagnosis.pressed ? "After pressing the ply" : "The ply",
-        millimetres(highest.height), place_text(highest.at), name_of(highest.kind), cause_text(highest, rig),
-        held_text(highest, rig), time_text(highest)));
+        millimetres(highest.height), place_text(highest.at), words_of(highest.kind).name,
+        cause_text(highest, rig), held_text(highest, rig), time_text(highest)));
     const Fold* first = diagnosis.first();
     if (first != nullptr && first != &highest)
-      sentences.push_back(fmt::format("The first that stands, {} high, is at {} ({}): {}{}.",
-                                      millimetres(first->height), place_text(first->at), name_of(first->kind),
-                                      cause_text(*first, rig), time_text(*first)));
+      sentences.push_back(fmt::format(
+          "The first that stands, {} high, is at {} ({}): {}{}.", millimetres(first->height),
+          place_text(first->at), words_of(first->kind).name, cause_text(*first, rig), time_text(*first)));
   }
   if (diagnosis.edge) sentences.push_back(edge_text(*diagnosis.edge, rig));
   if (diagnosis.effects && !diagnosis.good()) sentences.push_back(effects_text(*diagnosis.effects, rig));

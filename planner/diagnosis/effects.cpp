@@ -16,27 +16,27 @@ double StrokeEffect::size() const {
 }
 
 std::optional<StrokeEffects> stroke_effects(const DrapeProblem& problem, const Strokes& strokes,
-                                            const EffectsOptions& options, EvaluationLog& log) {
+                                            const std::string& fidelity, const SideRuns& runs,
+                                            EvaluationLog& log) {
   const auto run = make_batch_evaluate(
-      [&](const Schedule& schedule, const std::string& fidelity) {
-        if (const auto refusals = rig_refusals(schedule, *problem.definition().grippers); !refusals.empty())
-          throw WrongInput(refusals.front());
-        return outcome_of(problem.run_for_objective(schedule, fidelity));
+      [&](const Schedule& schedule, const std::string& at) {
+        require_playable(schedule, *problem.definition().grippers);
+        return outcome_of(problem.run_for_objective(schedule, at));
       },
-      log, options.threads, options.design, options.stop);
+      log, runs);
   const auto evaluate = [&](const std::vector<Strokes>& list) {
     std::vector<Schedule> schedules;
     for (const Strokes& one : list) schedules.push_back(to_schedule(problem.frame(), one));
-    return run(schedules, options.fidelity, "effects");
+    return run(schedules, fidelity, "effects");
   };
   const Outcome here = evaluate({strokes}).front();
   if (!here.score.valid) return std::nullopt;
   const double all =
-      2 * double(strokes.size()) * here.wall_seconds / thread_count(options.threads);  // of one kind
-  StrokeEffects effects{options.fidelity, {}};
+      2 * double(strokes.size()) * here.wall_seconds / thread_count(runs.threads);  // of one kind
+  StrokeEffects effects{fidelity, {}};
   int kinds = 0;
   for (const auto& [value, step] : {std::pair{&Stroke::height, kHeightStep}, {&Stroke::start, kStartStep}}) {
-    if (options.seconds > 0 && ++kinds * all > options.seconds) break;
+    if (runs.seconds > 0 && ++kinds * all > runs.seconds) break;
     std::vector<Strokes> list;
     for (size_t g = 0; g < strokes.size(); ++g) {
       for (const double sign : {1.0, -1.0}) {

@@ -1,13 +1,12 @@
 // Which strokes of a schedule matter: what the objective is where one of them is a little different.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "planner/drape/problem.hpp"
+#include "planner/search/batch_evaluate.hpp"
 #include "planner/search/evaluation_log.hpp"
 
 namespace drapeplan {
@@ -36,19 +35,12 @@ struct StrokeEffects {
       values;  ///< of largest effect first: all heights, and all starts where there was time
 };
 
-struct EffectsOptions {
-  std::string fidelity;
-  double seconds = 0;        ///< that the runs may take side by side [s]; 0: no limit
-  std::uint64_t design = 0;  ///< of the rig, see candidate_hash
-  int threads = 0;
-  std::function<bool()> stop = {};
-};
-
 /// Runs the schedule with each height, then with each start, one step up and down, through the log: two runs
 /// per value. Nothing where the time is not enough for all heights, or the schedule itself fails at this
 /// fidelity.
 /// @throws Interrupted once `stop` says so; what has run is in the log.
 std::optional<StrokeEffects> stroke_effects(const DrapeProblem& problem, const Strokes& strokes,
-                                            const EffectsOptions& options, EvaluationLog& log);
+                                            const std::string& fidelity, const SideRuns& runs,
+                                            EvaluationLog& log);
 
 }  // namespace drapeplan

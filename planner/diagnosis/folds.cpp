@@ -249,40 +249,22 @@ class FoldFinder {
 
 }  // namespace
 
-std::string name_of(FoldKind kind) {
+FoldWords words_of(FoldKind kind) {
   switch (kind) {
     case FoldKind::edge:
-      return "unheld edge";
+      return {"edge", "unheld edge"};
     case FoldKind::bridging:
-      return "bridging";
+      return {"bridging", "bridging"};
     case FoldKind::held_up:
-      return "held up by a pad";
+      return {"held_up", "held up by a pad"};
     case FoldKind::pad_rim:
-      return "shear at a pad's rim";
+      return {"pad_rim", "shear at a pad's rim"};
     case FoldKind::slack:
-      return "slack between grippers";
+      return {"slack", "slack between grippers"};
     case FoldKind::stall:
-      return "friction stall";
+      return {"stall", "friction stall"};
   }
   return {};
-}
-
-const char* key_of(FoldKind kind) {
-  switch (kind) {
-    case FoldKind::edge:
-      return "edge";
-    case FoldKind::bridging:
-      return "bridging";
-    case FoldKind::held_up:
-      return "held_up";
-    case FoldKind::pad_rim:
-      return "pad_rim";
-    case FoldKind::slack:
-      return "slack";
-    case FoldKind::stall:
-      return "stall";
-  }
-  return "";
 }
 
 std::vector<Fold> folds_of(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity) {

@@ -20,10 +20,11 @@ enum class FoldKind {
   slack,     ///< more ply than mold between two grippers, which landed too near to each other
 };
 
-/// "slack between grippers"
-std::string name_of(FoldKind kind);
-/// In result.json: "slack".
-const char* key_of(FoldKind kind);
+struct FoldWords {
+  const char* key = "";   ///< in result.json: "slack"
+  const char* name = "";  ///< "slack between grippers"
+};
+FoldWords words_of(FoldKind kind);
 
 /// One place where the ply is higher than its case allows, higher than all around it.
 struct Fold {

@@ -262,11 +262,11 @@ ReportTable folds_report(const Diagnosis& diagnosis, const RigOptions& rig) {
   for (const Fold& fold : diagnosis.folds) {
     std::vector<std::string> names;
     for (const int g : fold.grippers) names.push_back(rig.name(g));
-    table.rows.push_back(
-        {.cells = {fmt::to_string(table.rows.size() + 1), name_of(fold.kind), fixed(1e3 * fold.height, 2),
-                   fmt::format("{:.0f}, {:.0f}", 1e3 * fold.at.x(), 1e3 * fold.at.y()),
-                   fold.fibre == Fibre::warp ? "warp" : "weft", fixed(1e3 * fold.slack, 2),
-                   fmt::format("{}", fmt::join(names, ", ")), fixed(fold.since, 1)}});
+    table.rows.push_back({.cells = {fmt::to_string(table.rows.size() + 1), words_of(fold.kind).name,
+                                    fixed(1e3 * fold.height, 2),
+                                    fmt::format("{:.0f}, {:.0f}", 1e3 * fold.at.x(), 1e3 * fold.at.y()),
+                                    fold.fibre == Fibre::warp ? "warp" : "weft", fixed(1e3 * fold.slack, 2),
+                                    fmt::format("{}", fmt::join(names, ", ")), fixed(fold.since, 1)}});
   }
   return table;
 }

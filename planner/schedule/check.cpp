@@ -7,6 +7,8 @@
 #include <functional>
 #include <set>
 
+#include "mapping/error.hpp"
+
 namespace drapeplan {
 namespace {
 
@@ -142,6 +144,11 @@ std::vector<std::string> rig_refusals(const Schedule& schedule, const RigOptions
   }
   add_stretched_interlinks(schedule, rig, refusals);
   return refusals;
+}
+
+void require_playable(const Schedule& schedule, const RigOptions& rig) {
+  if (const auto refusals = rig_refusals(schedule, rig); !refusals.empty())
+    throw WrongInput(refusals.front());
 }
 
 }  // namespace drapeplan

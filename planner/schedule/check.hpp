@@ -16,5 +16,7 @@ namespace drapeplan {
 /// lag of a score.
 /// @param schedule  of this rig: one path per gripper.
 std::vector<std::string> rig_refusals(const Schedule& schedule, const RigOptions& rig);
+/// @throws WrongInput with the first of them.
+void require_playable(const Schedule& schedule, const RigOptions& rig);
 
 }  // namespace drapeplan

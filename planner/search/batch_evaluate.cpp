@@ -84,4 +84,8 @@ BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int thr
   };
 }
 
+BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, const SideRuns& runs) {
+  return make_batch_evaluate(std::move(evaluate), log, runs.threads, runs.design, runs.stop);
+}
+
 }  // namespace drapeplan

@@ -1,6 +1,7 @@
 // From "evaluate one schedule" to "evaluate a batch": parallel, cached, logged; a bad candidate is a score.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -21,6 +22,14 @@ Outcome scored(const std::function<Outcome()>& run);
 /// memory, a bug) ends the batch. Safe to call concurrently.
 using Evaluate = std::function<Outcome(const Schedule& schedule, const std::string& fidelity)>;
 
+/// Runs that a plan makes beside its search: what they may take, and whose they are.
+struct SideRuns {
+  double seconds = 0;        ///< that all may take side by side [s]; 0: no limit
+  std::uint64_t design = 0;  ///< of the rig, see candidate_hash
+  int threads = 0;
+  std::function<bool()> stop = {};  ///< asked before each run; may be empty
+};
+
 /// All that an optimiser sees. Outcomes in the order of the schedules. Safe to call concurrently.
 using BatchEvaluate = std::function<std::vector<Outcome>(
     const std::vector<Schedule>& schedules, const std::string& fidelity, const std::string& stage)>;
@@ -35,5 +44,7 @@ using BatchEvaluate = std::function<std::vector<Outcome>(
 /// the batch throws Interrupted.
 BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, int threads = 0,
                                   std::uint64_t design = 0, std::function<bool()> stop = {});
+/// Of runs beside a search; their time is not looked at.
+BatchEvaluate make_batch_evaluate(Evaluate evaluate, EvaluationLog& log, const SideRuns& runs);
 
 }  // namespace drapeplan

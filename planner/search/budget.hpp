@@ -28,6 +28,8 @@ class Budget {
   /// Takes note of a batch; reports of baselines and finalists do not count in a budget of evaluations.
   void count(const std::string& stage, const std::string& fidelity, const std::vector<Outcome>& outcomes,
              bool report = false);
+  /// Takes time off a budget of time, for what comes after the search [s].
+  void keep(double seconds) { options_.budget -= seconds; }
   /// Keeps time for what comes at the end, `runs` reports, so many at a time.
   void reserve(int runs, int at_a_time);
   /// There is time for so many more reports, side by side; always true for a budget of evaluations.

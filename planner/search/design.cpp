@@ -107,8 +107,7 @@ class JointSpace {
       const WaveFamily family(problem->frame());
       const Schedule schedule =
           to_schedule(problem->frame(), family.decode(x.tail<WaveFamily::kDimension>()));
-      if (const auto refusals = rig_refusals(schedule, *problem->definition().grippers); !refusals.empty())
-        throw WrongInput(refusals.front());
+      require_playable(schedule, *problem->definition().grippers);
       return outcome_of(problem->run_for_objective(schedule, fidelity));
     });
   }

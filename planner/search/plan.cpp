@@ -129,8 +129,7 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
                       PlanResult& result) {
   ReportedDrapes reported(problem.frame());
   const Evaluate evaluate = [&](const Schedule& schedule, const std::string& fidelity) {
-    if (const auto refusals = rig_refusals(schedule, *problem.definition().grippers); !refusals.empty())
-      throw WrongInput(refusals.front());
+    require_playable(schedule, *problem.definition().grippers);
     const bool report = fidelity == kReport;
     Drape drape = report ? problem.run(schedule, fidelity, kReportFrames)
                          : problem.run_for_objective(schedule, fidelity);
@@ -141,7 +140,7 @@ void search_schedules(const DrapeProblem& problem, std::uint64_t design, Evaluat
   };
   StagedOptions staged;
   staged.optimise = problem.definition().optimise;
-  staged.optimise.budget *= 1 - options.kept;
+  staged.kept = options.kept;
   staged.threads = options.threads;
   if (result.design) staged.wave = result.design->wave;
   staged.ladder = plan_ladder(problem.definition());

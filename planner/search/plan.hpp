@@ -22,9 +22,9 @@ inline constexpr int kReportFrames = 21;
 struct PlanOptions {
   bool resume = false;  ///< continue from the evaluations that the run folder holds
   int threads = 0;      ///< 0: one per core
-  double kept = 0;      ///< share of a budget of time that is kept for what comes after the search
   /// Asked before each run; once it says true, the search ends with what it has. May be empty.
   std::function<bool()> stop = {};
+  KeptTime kept = {};
   /// Called with the folder that the results of an earlier run were moved to, if there were some.
   std::function<void(const std::filesystem::path&)> moved = {};
 };

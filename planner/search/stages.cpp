@@ -65,6 +65,9 @@ class StagedSearch {
     compare({{"uniform", uniform_strokes(frame_)}, {"wave", wave_strokes(frame_)}}, "baseline");
     result_.uniform = result_.finalists[0];
     result_.wave = result_.finalists[1];
+    if (options_.kept)
+      budget_.keep(
+          options_.kept(std::max(result_.uniform.outcome.wall_seconds, result_.wave.outcome.wall_seconds)));
     reports_ = options_.optimise.finalists + kExpected;
     if (options_.optimise.evaluations == 0)
       reports_ = std::max(reports_, budget_.affords(kReportShare, kReport));

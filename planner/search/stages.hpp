@@ -15,6 +15,10 @@
 
 namespace drapeplan {
 
+/// What of a budget of time a search leaves for what comes after it [s], where a run at the reporting
+/// fidelity takes `each` [s]: asked once the baselines have run. Empty: nothing.
+using KeptTime = std::function<double(double each)>;
+
 struct StagedOptions {
   OptimiseOptions optimise;
   /// Fidelities that are searched, cheapest first; finalists are compared at kReport.
@@ -24,6 +28,7 @@ struct StagedOptions {
   ObjectiveNear objective_near = {};
   Eigen::VectorXd field_scale = {};
   Eigen::VectorXd wave = {};  ///< one more wave to start from, in coordinates; empty: none
+  KeptTime kept = {};
   int threads = 0;            ///< 0: OpenMP's default; does not change the result
 };
 

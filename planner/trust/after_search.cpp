@@ -49,12 +49,7 @@ class AfterSearch {
 
   [[nodiscard]] std::optional<Confirmation> confirm_winner() {
     tell("confirm");
-    return confirm(problem_, result_.search,
-                   {.seconds = seconds_of(kConfirmShare, optimise()),
-                    .design = design_of(result_),
-                    .threads = options_.threads,
-                    .stop = options_.stop},
-                   log_);
+    return confirm(problem_, result_.search, runs_within(kConfirmShare), log_);
   }
 
   [[nodiscard]] std::optional<PlantSpread> spread_of_winner() {
@@ -92,16 +87,15 @@ class AfterSearch {
   }
 
   [[nodiscard]] const OptimiseOptions& optimise() const { return problem_.definition().optimise; }
+  [[nodiscard]] SideRuns runs_within(double share) const {
+    return runs_after_search(share, optimise(), result_, options_);
+  }
   /// The first that is asked for decides at which fidelity: all are compared at one.
   [[nodiscard]] std::optional<PlantSpread> spread_of_schedule(const Schedule& schedule) {
+    SideRuns runs = runs_within(kSpreadShare);
+    if (fidelity_known_) runs.seconds = 0;
     std::optional<PlantSpread> spread =
-        spread_of(problem_, schedule, better_baseline(result_.search).schedule,
-                  {.fidelities = fidelities_,
-                   .seconds = fidelity_known_ ? 0 : seconds_of(kSpreadShare, optimise()),
-                   .design = design_of(result_),
-                   .threads = options_.threads,
-                   .stop = options_.stop},
-                  log_);
+        spread_of(problem_, schedule, better_baseline(result_.search).schedule, fidelities_, runs, log_);
     if (spread) fidelities_ = {spread->fidelity}, fidelity_known_ = true;
     return spread;
   }
@@ -126,16 +120,21 @@ class AfterSearch {
 
 }  // namespace
 
-double seconds_of(double share, const OptimiseOptions& optimise) {
-  return optimise.evaluations > 0 ? 0 : share * optimise.budget;
+SideRuns runs_after_search(double share, const OptimiseOptions& optimise, const PlanResult& result,
+                           const PlanOptions& options) {
+  return {.seconds = optimise.evaluations > 0 ? 0 : share * optimise.budget,
+          .design = result.design ? design_hash(result.design->overrides) : 0,
+          .threads = options.threads,
+          .stop = options.stop};
 }
 
-std::uint64_t design_of(const PlanResult& result) {
-  return result.design ? design_hash(result.design->overrides) : 0;
-}
-
-double share_after_search(const OptimiseOptions& optimise) {
-  return kConfirmShare + kSpreadShare * (optimise.choose == Choose::nominal ? 1 : kRobustCandidates);
+double seconds_after_search(const Case& definition, double each, int threads) {
+  const OptimiseOptions& optimise = definition.optimise;
+  if (optimise.evaluations > 0) return 0;
+  const int compared = optimise.choose == Choose::nominal ? 1 : kRobustCandidates;
+  const SideRuns confirmed{.seconds = kConfirmShare * optimise.budget, .threads = threads};
+  return confirm_seconds(definition.fidelities.at(kReport), each, confirmed) +
+         compared * kSpreadShare * optimise.budget;
 }
 
 void look_closer(const DrapeProblem& given, EvaluationLog& log, const PlanOptions& options,

@@ -2,7 +2,6 @@
 // be claimed.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 
 #include "planner/search/plan.hpp"
@@ -16,13 +15,13 @@ inline constexpr double kConfirmShare = 0.1, kSpreadShare = 0.05;
 /// So many schedules are compared in disturbed plants where these decide (`optimise.choose`).
 inline constexpr int kRobustCandidates = 3;
 
-/// Seconds of a share of a budget; 0 where it is no time: there is no limit.
-double seconds_of(double share, const OptimiseOptions& optimise);
-/// Of the rig that a plan's schedules are for, see candidate_hash; 0: the case's.
-std::uint64_t design_of(const PlanResult& result);
+/// Runs of a plan after its search that may take a share of its budget.
+SideRuns runs_after_search(double share, const OptimiseOptions& optimise, const PlanResult& result,
+                           const PlanOptions& options);
 
-/// The share that a search leaves for all of this.
-double share_after_search(const OptimiseOptions& optimise);
+/// What of the budget a search leaves for all of this [s].
+/// @param each  what a run at the reporting fidelity takes [s].
+double seconds_after_search(const Case& definition, double each, int threads);
 
 /// Where `optimise.choose` says so, and there is time, the best of the search becomes the finalist that does
 /// best in disturbed plants. Then it is confirmed, claims are checked against errors, and its spread is

@@ -22,17 +22,23 @@ double cost(bool cells, double time) {
   return (cells ? std::pow(kFinerCells, 3) : 1) * time;
 }
 
+struct FinerSetting {
+  FemOptions options;
+  double seconds;  ///< of both runs
+};
+
 /// The finest setting whose runs fit into the time; nothing if there is none that is finer.
-std::optional<FemOptions> finer_setting(const FemOptions& report, double seconds_each,
-                                        const ConfirmOptions& options) {
+std::optional<FinerSetting> finer_setting(const FemOptions& report, double seconds_each,
+                                          const SideRuns& runs) {
   const double slower = std::clamp(report.time_scaling, 1.0, kFinerTime);  // 1 where it is played as it is
-  const double side_by_side = thread_count(options.threads) > 1 ? 1 : 2;
+  const double side_by_side = thread_count(runs.threads) > 1 ? 1 : 2;
   for (const auto& [cells, time] : {std::pair{true, slower}, {true, 1.0}, {false, slower}}) {
     if (!cells && !(time > 1)) continue;
-    if (options.seconds > 0 && side_by_side * seconds_each * cost(cells, time) > options.seconds) continue;
-    FemOptions finer = report;
-    if (cells) finer.mesh_size /= kFinerCells;
-    finer.time_scaling /= time;
+    const double seconds = side_by_side * seconds_each * cost(cells, time);
+    if (runs.seconds > 0 && seconds > runs.seconds) continue;
+    FinerSetting finer{report, seconds};
+    if (cells) finer.options.mesh_size /= kFinerCells;
+    finer.options.time_scaling /= time;
     return finer;
   }
   return std::nullopt;
@@ -49,26 +55,30 @@ double Confirmation::gain_error() const {
 }
 
 std::optional<Confirmation> confirm(const DrapeProblem& problem, const StagedResult& search,
-                                    const ConfirmOptions& options, EvaluationLog& log) {
+                                    const SideRuns& runs, EvaluationLog& log) {
   const Candidate& baseline = better_baseline(search);
   if (search.best_fidelity != kReport || !search.best.outcome.score.valid || !baseline.outcome.score.valid)
     return std::nullopt;
   const double each = std::max(search.best.outcome.wall_seconds, baseline.outcome.wall_seconds);
-  const std::optional<FemOptions> finer =
-      finer_setting(problem.definition().fidelities.at(kReport), each, options);
+  const std::optional<FinerSetting> finer =
+      finer_setting(problem.definition().fidelities.at(kReport), each, runs);
   if (!finer) return std::nullopt;
   // A model that cannot be built is a failed run, as any other one.
   const Evaluate evaluate = [&](const Schedule& schedule, const std::string&) {
-    return outcome_of(problem.run_on(model_of(problem.definition(), *finer), schedule));
+    return outcome_of(problem.run_on(model_of(problem.definition(), finer->options), schedule));
   };
-  const std::vector<Outcome> outcomes =
-      make_batch_evaluate(evaluate, log, options.threads, options.design, options.stop)(
-          {search.best.schedule, baseline.schedule}, setting_text(*finer), "confirm");
-  return Confirmation{.options = *finer,
+  const std::vector<Outcome> outcomes = make_batch_evaluate(evaluate, log, runs)(
+      {search.best.schedule, baseline.schedule}, setting_text(finer->options), "confirm");
+  return Confirmation{.options = finer->options,
                       .reported = search.best.outcome.score,
                       .reported_baseline = baseline.outcome.score,
                       .finer = outcomes[0].score,
                       .finer_baseline = outcomes[1].score};
+}
+
+double confirm_seconds(const FemOptions& report, double each, const SideRuns& runs) {
+  const std::optional<FinerSetting> finer = finer_setting(report, each, runs);
+  return finer ? finer->seconds : 0;
 }
 
 std::string confirmation_text(const Confirmation& confirmation) {

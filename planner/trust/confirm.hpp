@@ -1,13 +1,12 @@
 // The winner of a plan, played once more one fidelity above the reporting one.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
 #include "planner/drape/problem.hpp"
+#include "planner/search/batch_evaluate.hpp"
 #include "planner/search/evaluation_log.hpp"
 #include "planner/search/stages.hpp"
 
@@ -42,18 +41,14 @@ struct Confirmation {
   [[nodiscard]] bool undecided() const { return !finer.valid && !finer_baseline.valid; }
 };
 
-struct ConfirmOptions {
-  double seconds = 0;        ///< that the runs may take side by side [s]; 0: no limit
-  std::uint64_t design = 0;  ///< of the rig, see candidate_hash
-  int threads = 0;
-  std::function<bool()> stop = {};
-};
-
 /// Cells and time finer, or what of it there is time for, cells first; nothing where there is time for
 /// neither, or the search has no winner at the reporting fidelity.
 /// @throws Interrupted once `stop` says so; what has run is in the log.
 std::optional<Confirmation> confirm(const DrapeProblem& problem, const StagedResult& search,
-                                    const ConfirmOptions& options, EvaluationLog& log);
+                                    const SideRuns& runs, EvaluationLog& log);
+/// What of `runs.seconds` it takes where a run at the reporting fidelity takes `each` [s]; 0 where there is
+/// time for nothing that is finer.
+double confirm_seconds(const FemOptions& report, double each, const SideRuns& runs);
 
 /// "played again with 6.67 mm cells, ...: largest gap 9.8 mm (reported: 9.95), ...".
 std::string confirmation_text(const Confirmation& confirmation);

@@ -106,8 +106,8 @@ int PlantSpread::better() const {
 }
 
 std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule& best,
-                                     const Schedule& baseline, const SpreadOptions& options,
-                                     EvaluationLog& log) {
+                                     const Schedule& baseline, const std::vector<std::string>& fidelities,
+                                     const SideRuns& runs, EvaluationLog& log) {
   const std::vector<Disturbance> list = disturbances(problem.definition());
   // Both schedules in each plant, one after the other: the undisturbed pair tells what all will take.
   const auto evaluate = [&](const std::string& fidelity, size_t from, size_t to) {
@@ -124,19 +124,19 @@ std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule
     const auto write = [&] {
       for (size_t k = 0; k < outcomes.size(); ++k) {
         if (finished[k] && !outcomes[k].cached)
-          log.write(candidate_hash(options.design, schedule_of(k)), name_of(k), "spread", outcomes[k]);
+          log.write(candidate_hash(runs.design, schedule_of(k)), name_of(k), "spread", outcomes[k]);
       }
     };
     const auto one = [&](int i) {
       const auto k = size_t(i);
-      if (options.stop && options.stop()) throw Interrupted();
-      outcomes[k] = log.evaluate_once(candidate_hash(options.design, schedule_of(k)), name_of(k), [&] {
+      if (runs.stop && runs.stop()) throw Interrupted();
+      outcomes[k] = log.evaluate_once(candidate_hash(runs.design, schedule_of(k)), name_of(k), [&] {
         return scored([&] { return drape(problem, list[(from + k) / 2], schedule_of(k), fidelity); });
       });
       finished[k] = 1;
     };
     try {
-      parallel_for(int(outcomes.size()), one, options.threads);
+      parallel_for(int(outcomes.size()), one, runs.threads);
     } catch (...) {
       write();
       throw;
@@ -144,18 +144,17 @@ std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule
     write();
     return outcomes;
   };
-  const size_t runs = 2 * list.size();
+  const size_t count = 2 * list.size();
   PlantSpread spread;
   std::vector<Outcome> outcomes;
-  for (auto name = options.fidelities.rbegin(); name != options.fidelities.rend() && spread.fidelity.empty();
-       ++name) {
+  for (auto name = fidelities.rbegin(); name != fidelities.rend() && spread.fidelity.empty(); ++name) {
     outcomes = evaluate(*name, 0, 2);
     const double each = 0.5 * (outcomes[0].wall_seconds + outcomes[1].wall_seconds);
-    if (options.seconds <= 0 || double(runs) * each <= options.seconds * thread_count(options.threads))
+    if (runs.seconds <= 0 || double(count) * each <= runs.seconds * thread_count(runs.threads))
       spread.fidelity = *name;
   }
   if (spread.fidelity.empty()) return {};
-  const std::vector<Outcome> others = evaluate(spread.fidelity, 2, runs);
+  const std::vector<Outcome> others = evaluate(spread.fidelity, 2, count);
   outcomes.insert(outcomes.end(), others.begin(), others.end());
   for (size_t k = 0; k < list.size(); ++k)
     spread.pairs.push_back({list[k].name, outcomes[2 * k].score, outcomes[2 * k + 1].score});

@@ -1,7 +1,6 @@
 // How a planned sequence does where the plant is a little different from the case.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "planner/drape/problem.hpp"
+#include "planner/search/batch_evaluate.hpp"
 #include "planner/search/evaluation_log.hpp"
 
 namespace drapeplan {
@@ -46,20 +46,13 @@ struct PlantSpread {
   [[nodiscard]] int plants() const { return int(pairs.size()) - 1; }
 };
 
-struct SpreadOptions {
-  std::vector<std::string> fidelities;  ///< to choose from, cheapest first
-  double seconds = 0;                   ///< that all runs may take side by side [s]; 0: no limit
-  std::uint64_t design = 0;             ///< of the rig, see candidate_hash
-  int threads = 0;
-  std::function<bool()> stop = {};
-};
-
 /// Runs both schedules, as they are commanded, in every disturbed plant, through the log: at the finest
 /// fidelity that the time is enough for; nothing where it is enough for none.
+/// @param fidelities  to choose from, cheapest first.
 /// @throws Interrupted once `stop` says so; what has run is in the log.
 std::optional<PlantSpread> spread_of(const DrapeProblem& problem, const Schedule& best,
-                                     const Schedule& baseline, const SpreadOptions& options,
-                                     EvaluationLog& log);
+                                     const Schedule& baseline, const std::vector<std::string>& fidelities,
+                                     const SideRuns& runs, EvaluationLog& log);
 
 /// What a schedule is worth by a rule; fewer failures come first.
 struct Worth {

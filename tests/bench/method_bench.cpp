@@ -1,8 +1,7 @@
-// Which search method finds the best schedule within a number of evaluations: all of them on the same subjects, from
-// the same starts, with equal budgets. Usage: method_bench OUT_DIR [--seeds N] [--evaluations N] [--threads N]
-// [CASE...] Without cases: functions of starts and heights with a known optimum and noise. Cases are played at their
-// cheapest fidelity. Writes methods.csv (one line per subject, method, seed and checkpoint) and profile.svg, prints a
-// table. What was found is kept in traces.jsonl: a bench that was stopped, or that is given more seeds, goes on.
+// Which search method finds the best schedule within a number of evaluations: all of them on the same
+// subjects, from the same starts, with equal budgets. Without cases: functions of starts and heights with a
+// known optimum and noise. Writes methods.csv (one line per subject, method, seed and checkpoint),
+// profile.svg and traces.jsonl, from which a bench that was stopped, or that is given more seeds, goes on.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -357,7 +356,7 @@ class KeptTraces {
   std::mutex mutex_;
 };
 
-int run(const Options& options) {
+void run(const Options& options) {
   std::vector<Subject> subjects;
   for (const std::string& file : options.files) subjects.push_back(case_subject(file));
   if (subjects.empty()) subjects = functions();
@@ -383,7 +382,6 @@ int run(const Options& options) {
       },
       options.threads);
   write_results(options, subjects, traces);
-  return 0;
 }
 
 }  // namespace
@@ -393,10 +391,10 @@ int main(int argc, char** argv) {
   CLI::App app("search methods on the same subjects with equal budgets");
   drapeplan::Options options;
   app.add_option("OUT_DIR", options.out)->required();
-  app.add_option("CASE", options.files);
+  app.add_option("CASE", options.files, "case files, played at their cheapest fidelity");
   app.add_option("--seeds", options.seeds)->check(CLI::PositiveNumber);
   app.add_option("--evaluations", options.evaluations)->check(CLI::Range(4, 100000));
   app.add_option("--threads", options.threads);
   CLI11_PARSE(app, argc, argv);
-  return drapeplan::run(options);
+  drapeplan::run(options);
 }

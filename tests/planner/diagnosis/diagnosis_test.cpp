@@ -5,16 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "planner/case/file.hpp"
+#include "tests/planner/trust/coarse_case.hpp"
 
 namespace drapeplan {
 namespace {
-
-Case coarse_case() {
-  return read_case(DRAPEPLAN_SOURCE_DIR "/cases/flexdraper-quick.json",
-                   {"fem.mesh_size=40 mm", "fem.time_scaling=30", "fidelities={}"})
-      .definition;
-}
 
 TEST(Diagnosis, NamesTheHighestFoldAndTheEdge) {
   const DrapeProblem problem(coarse_case());
@@ -54,8 +48,7 @@ TEST(StrokeEffects, AreChangesOfTheSimulatedObjective) {
   const DrapeProblem problem(coarse_case());
   const Strokes strokes = wave_strokes(problem.frame());
   EvaluationLog log, other;
-  const StrokeEffects effects =
-      stroke_effects(problem, strokes, {.fidelity = kReport, .threads = 1}, log).value();
+  const StrokeEffects effects = stroke_effects(problem, strokes, kReport, {.threads = 1}, log).value();
   ASSERT_EQ(effects.values.size(), 2 * strokes.size());
   const double here = problem.run(to_schedule(problem.frame(), strokes), kReport).score.objective;
   const StrokeEffect& first = effects.values.front();
@@ -67,13 +60,12 @@ TEST(StrokeEffects, AreChangesOfTheSimulatedObjective) {
   for (size_t k = 1; k < effects.values.size(); ++k)
     EXPECT_GE(effects.values[k - 1].size(), effects.values[k].size());
   // Any number of threads, and the log, give the same.
-  const StrokeEffects again =
-      stroke_effects(problem, strokes, {.fidelity = kReport, .threads = 2}, other).value();
+  const StrokeEffects again = stroke_effects(problem, strokes, kReport, {.threads = 2}, other).value();
   const int runs = log.size();
-  stroke_effects(problem, strokes, {.fidelity = kReport, .threads = 1}, log);
+  stroke_effects(problem, strokes, kReport, {.threads = 1}, log);
   EXPECT_EQ(log.size(), runs) << "all was served from the log";
   for (size_t k = 0; k < effects.values.size(); ++k) EXPECT_EQ(again.values[k].more, effects.values[k].more);
-  EXPECT_FALSE(stroke_effects(problem, strokes, {.fidelity = kReport, .seconds = 1e-9}, other).has_value());
+  EXPECT_FALSE(stroke_effects(problem, strokes, kReport, {.seconds = 1e-9}, other).has_value());
 }
 
 }  // namespace

@@ -44,6 +44,8 @@ TEST(Budget, OfTimeKeepsWhatTheReportsWillTake) {
   EXPECT_NEAR(last.seconds_left, 85, 1e-12) << "with the reports";
   budget.count("report", kReport, batch(4, 10, clock), true);
   EXPECT_NEAR(budget.spent(), 35.0 / 100, 1e-12);
+  budget.keep(20);
+  EXPECT_NEAR(budget.spent(), 35.0 / 80, 1e-12);
 }
 
 TEST(Budget, OfEvaluationsDoesNotCountReports) {

@@ -4,15 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include "planner/case/file.hpp"
+#include "tests/planner/trust/coarse_case.hpp"
 
 namespace drapeplan {
 namespace {
 
 Case small_case(Choose choose) {
-  Case definition = read_case(DRAPEPLAN_SOURCE_DIR "/cases/flexdraper-quick.json",
-                              {"fem.mesh_size=40 mm", "fem.time_scaling=30", "fidelities={}"})
-                        .definition;
+  Case definition = coarse_case();
   definition.optimise.evaluations = 8;
   definition.optimise.choose = choose;
   return definition;
@@ -52,7 +50,7 @@ TEST(AfterSearch, TheWinnerMayBeTheOneThatIsLeastDisturbed) {
     if (compared++ == kRobustCandidates) break;
     const PlantSpread spread =
         spread_of(plan.problem, candidate.schedule, plan.result.search.uniform.schedule,
-                  {.fidelities = {plan.trust.spread->fidelity}}, plan.log)
+                  {plan.trust.spread->fidelity}, {}, plan.log)
             .value();
     EXPECT_FALSE(worth_of(spread, rule).before(chosen)) << candidate.name;
   }
@@ -62,10 +60,17 @@ TEST(AfterSearch, TheWinnerMayBeTheOneThatIsLeastDisturbed) {
 }
 
 TEST(AfterSearch, KeepsTimeForWhatItDoes) {
-  OptimiseOptions optimise;
-  EXPECT_NEAR(share_after_search(optimise), kConfirmShare + kSpreadShare, 1e-12);
-  optimise.choose = Choose::worst;
-  EXPECT_NEAR(share_after_search(optimise), kConfirmShare + 3 * kSpreadShare, 1e-12);
+  Case definition = small_case(Choose::nominal);
+  EXPECT_EQ(seconds_after_search(definition, 1, 2), 0) << "a budget of evaluations";
+  definition.optimise.evaluations = 0;
+  definition.optimise.budget = 1000;
+  const double spread = 1000 * kSpreadShare;
+  // Confirmed on finer cells and in more time, as far as a tenth of the budget goes.
+  EXPECT_NEAR(seconds_after_search(definition, 10, 2), 67.5 + spread, 1e-9);
+  EXPECT_NEAR(seconds_after_search(definition, 20, 2), 67.5 + spread, 1e-9);
+  EXPECT_NEAR(seconds_after_search(definition, 60, 2), spread, 1e-9) << "no confirmation is possible";
+  definition.optimise.choose = Choose::worst;
+  EXPECT_NEAR(seconds_after_search(definition, 60, 2), kRobustCandidates * spread, 1e-9);
 }
 
 }  // namespace

@@ -5,18 +5,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "planner/case/file.hpp"
 #include "planner/search/batch_evaluate.hpp"
 #include "planner/trust/claim.hpp"
+#include "tests/planner/trust/coarse_case.hpp"
 
 namespace drapeplan {
 namespace {
-
-Case coarse_case() {
-  return read_case(DRAPEPLAN_SOURCE_DIR "/cases/flexdraper-quick.json",
-                   {"fem.mesh_size=40 mm", "fem.time_scaling=30", "fidelities={}"})
-      .definition;
-}
 
 /// A search that ended with the wave.
 StagedResult ended(const DrapeProblem& problem) {
@@ -66,6 +60,9 @@ TEST(Confirmation, TakesWhatThereIsTimeFor) {
   EXPECT_FALSE(with(20.1, 1).has_value()) << "one after the other";
   EXPECT_EQ(with(34, 2)->options.time_scaling, report.time_scaling) << "1.5^3 the time";
   EXPECT_LT(with(68, 2)->options.time_scaling, report.time_scaling);
+  EXPECT_EQ(confirm_seconds(report, 10, {.seconds = 15, .threads = 2}), 0);
+  EXPECT_EQ(confirm_seconds(report, 10, {.seconds = 30, .threads = 2}), 20);
+  EXPECT_NEAR(confirm_seconds(report, 10, {.seconds = 60, .threads = 2}), 33.75, 1e-9);
   search.best_fidelity = "screen";
   EXPECT_FALSE(with(0, 2).has_value()) << "there is no winner at the reporting fidelity";
 }

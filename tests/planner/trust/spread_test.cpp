@@ -6,16 +6,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "planner/case/file.hpp"
+#include "tests/planner/trust/coarse_case.hpp"
 
 namespace drapeplan {
 namespace {
-
-Case coarse_case(std::vector<std::string> overrides = {}) {
-  for (const char* change : {"fem.mesh_size=40 mm", "fem.time_scaling=30", "fidelities={}"})
-    overrides.emplace_back(change);
-  return read_case(DRAPEPLAN_SOURCE_DIR "/cases/flexdraper-quick.json", overrides).definition;
-}
 
 TEST(Disturbances, ChangeOneThingEachUpAndDown) {
   const Case nominal = coarse_case();
@@ -46,17 +40,16 @@ TEST(PlantSpread, IsTheSameForAnyNumberOfThreadsAndFromTheLog) {
   const Schedule uniform = to_schedule(problem.frame(), uniform_strokes(problem.frame()));
   const Schedule wave = to_schedule(problem.frame(), wave_strokes(problem.frame()));
   EvaluationLog log, other;
-  const PlantSpread spread =
-      spread_of(problem, wave, uniform, {.fidelities = {kReport}, .threads = 1}, log).value();
+  const PlantSpread spread = spread_of(problem, wave, uniform, {kReport}, {.threads = 1}, log).value();
   ASSERT_EQ(spread.pairs.size(), 15u);
   EXPECT_EQ(spread.fidelity, kReport);
   EXPECT_EQ(spread.pairs[0].best.objective, problem.run(wave, kReport).score.objective);
   EXPECT_EQ(spread.pairs[0].baseline.objective, problem.run(uniform, kReport).score.objective);
   EXPECT_NE(spread.pairs[1].best.objective, spread.pairs[0].best.objective);
   EXPECT_EQ(spread_json(spread),
-            spread_json(*spread_of(problem, wave, uniform, {.fidelities = {kReport}, .threads = 2}, other)));
+            spread_json(*spread_of(problem, wave, uniform, {kReport}, {.threads = 2}, other)));
   EXPECT_EQ(log.size(), 30);
-  spread_of(problem, wave, uniform, {.fidelities = {kReport}, .threads = 1}, log);
+  spread_of(problem, wave, uniform, {kReport}, {.threads = 1}, log);
   EXPECT_EQ(log.size(), 30) << "all was served from the log";
 }
 
@@ -78,8 +71,7 @@ TEST(PlantSpread, IsLeftOutWhereTheTimeIsNotEnough) {
   const DrapeProblem problem(coarse_case());
   const Schedule uniform = to_schedule(problem.frame(), uniform_strokes(problem.frame()));
   EvaluationLog log;
-  EXPECT_FALSE(
-      spread_of(problem, uniform, uniform, {.fidelities = {kReport}, .seconds = 1e-9, .threads = 1}, log));
+  EXPECT_FALSE(spread_of(problem, uniform, uniform, {kReport}, {.seconds = 1e-9, .threads = 1}, log));
   EXPECT_EQ(log.size(), 1) << "the undisturbed run alone tells so";
 }
 
