@@ -148,7 +148,10 @@ void look_closer(const DrapeProblem& given, EvaluationLog& log, const PlanOption
   trust.rule = after.choose_winner();
   if (result.search.best.name != best) claim();
   trust.confirmation = after.confirm_winner();
-  if (trust.confirmation) claim_confirmed(*trust.confirmation, result.search);
+  if (trust.confirmation)
+    claim_confirmed(*trust.confirmation, result.search);
+  else
+    result.search.message += "; no time was left to play it again at a finer setting";
   trust.spread = after.spread_of_winner();
 }
 

@@ -59,6 +59,20 @@ TEST(AfterSearch, TheWinnerMayBeTheOneThatIsLeastDisturbed) {
   EXPECT_NE(plan.result.search.message.find("it was chosen for its "), std::string::npos);
 }
 
+TEST(AfterSearch, SaysWhereTheWinnerCouldNotBeConfirmed) {
+  Planned plan(Choose::nominal);
+  EXPECT_EQ(plan.result.search.message.find("no time was left"), std::string::npos);
+  Case hasty = small_case(Choose::nominal);
+  hasty.optimise.evaluations = 0;
+  hasty.optimise.budget = 1e-6;
+  const DrapeProblem problem(hasty);
+  PlanTrust trust;
+  look_closer(problem, plan.log, {}, {}, plan.result, trust);
+  EXPECT_FALSE(trust.confirmation.has_value());
+  EXPECT_NE(plan.result.search.message.find("; no time was left to play it again at a finer setting"),
+            std::string::npos);
+}
+
 TEST(AfterSearch, KeepsTimeForWhatItDoes) {
   Case definition = small_case(Choose::nominal);
   EXPECT_EQ(seconds_after_search(definition, 1, 2), 0) << "a budget of evaluations";
