@@ -257,6 +257,15 @@ void check_profiles(const CaseFields& fields, FieldReader& reader) {
   }
 }
 
+void check_instants(const CaseFields& fields, FieldReader& reader) {
+  std::set<std::string> names;
+  for (size_t k = 0; k < fields.definition.instants.size(); ++k) {
+    const std::string pointer = fmt::format("/instants/{}/name", k);
+    if (reader.good(pointer) && !names.insert(fields.definition.instants[k].name).second)
+      reader.fail(pointer, "another instant has the same name");
+  }
+}
+
 /// Faster rates are resisted more: what is weaker the faster it goes would feed every vibration.
 void check_rates(FieldReader& reader, const std::string& mode, const CurveFields& fields) {
   const std::string pointer = fmt::format("/material/{}/rates", mode);
@@ -340,6 +349,7 @@ void check_case(const CaseFields& fields, FieldReader& reader) {
   check_press(fields, reader);
   check_probes(fields, reader);
   check_profiles(fields, reader);
+  check_instants(fields, reader);
   check_design(fields.definition.optimise.design, reader);
   if (reader.good("/optimise") && c.optimise.longest_sequence < c.optimise.shortest_stroke) {
     reader.fail("/optimise", "longest_sequence is shorter than shortest_stroke");

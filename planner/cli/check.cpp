@@ -1,10 +1,12 @@
-// check, schema, explain: everything about case files that needs no computation.
+// check, schema, explain: everything about case files that needs no simulation.
 #include <fmt/format.h>
 
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "planner/cli/cli.hpp"
+#include "planner/drape/map_result.hpp"
+#include "planner/search/plan.hpp"
 
 namespace drapeplan {
 namespace {
@@ -20,6 +22,32 @@ json error_json(const InputError& error) {
   return {{"file", error.file}, {"line", error.line}, {"path", error.path}, {"message", error.message}};
 }
 
+/// Maps the ply and builds the models of its runs, as far as the case has these.
+/// @return warnings.  @throws WrongInput, NotFinished.
+std::vector<std::string> try_case(const Case& definition) {
+  const bool simulates = definition.material.thickness > 0;
+  if (!definition.mapping || !definition.mold) {
+    if (simulates) static_cast<void>(model_of(definition, definition.fidelities.at(kReport)));
+    return {};
+  }
+  if (!definition.grippers || !simulates) return map_warnings(definition, map_case(definition));
+  const DrapeProblem problem(definition);
+  if (!definition.chooses_fidelities) build_models(problem);
+  return map_warnings(problem.definition(), problem.mapping());
+}
+
+/// What cannot be done with a case that has no fault in itself is an error of its file, what is odd a note.
+void try_case(const std::string& file, CaseReading& reading) {
+  try {
+    for (const std::string& warning : try_case(reading.definition))
+      reading.notes.push_back("warning: " + warning);
+  } catch (...) {
+    const Failure failure = failure_of(std::current_exception());
+    if (failure.code == kBug) throw;
+    reading.errors.push_back({file, 0, "", failure.reason});
+  }
+}
+
 int check(const CheckOptions& options) {
   std::vector<InputError> all;
   json cases = json::array();
@@ -27,6 +55,7 @@ int check(const CheckOptions& options) {
   Case single;
   for (const std::string& file : options.files) {
     CaseReading reading = read_case(file, options.common.overrides);
+    if (reading.errors.empty()) try_case(file, reading);
     json errors = json::array();
     for (const InputError& error : reading.errors) errors.push_back(error_json(error));
     cases.push_back({{"file", file}, {"valid", reading.errors.empty()}, {"errors", std::move(errors)}});
@@ -80,7 +109,8 @@ int explain(const ExplainOptions& options) {
 
 void add_check(CLI::App& program, Action& action) {
   add_verb<CheckOptions>(
-      program, action, "check", "reads case files and lists everything that is wrong with them",
+      program, action, "check",
+      "reads case files, maps their plies, and lists everything that is wrong and what a plan would refuse",
       [](CLI::App& verb, CheckOptions& options) {
         verb.add_option("CASE", options.files, "case files")->required();
       },

@@ -103,13 +103,6 @@ std::string result_text(const DrapeProblem& problem, const PlanResult& result, c
   return text + "\n";
 }
 
-/// What cannot be built is found before anything is written.
-void build_models(const DrapeProblem& problem) {
-  std::vector<std::string> fidelities = plan_ladder(problem.definition());
-  fidelities.emplace_back(kReport);
-  for (const std::string& fidelity : fidelities) static_cast<void>(problem.model(fidelity));
-}
-
 /// Which strokes of the best schedule matter, at the cheapest fidelity.
 std::optional<StrokeEffects> effects_of_best(const DrapeProblem& problem, const PlanResult& result,
                                              EvaluationLog& log, const PlanOptions& planning) {

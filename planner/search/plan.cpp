@@ -121,6 +121,12 @@ std::vector<std::string> plan_ladder(const Case& definition) {
   return ladder;
 }
 
+void build_models(const DrapeProblem& problem) {
+  std::vector<std::string> fidelities = plan_ladder(problem.definition());
+  fidelities.emplace_back(kReport);
+  for (const std::string& fidelity : fidelities) static_cast<void>(problem.model(fidelity));
+}
+
 namespace {
 
 /// The stages of the search on one rig, at the reporting fidelity in the end.

@@ -41,6 +41,11 @@ struct PlanResult {
 /// Fidelities that a plan of the case searches, cheapest first: `screen` and `search`, where it has them.
 std::vector<std::string> plan_ladder(const Case& definition);
 
+/// Builds the models of all fidelities that a plan uses: what cannot be built is found before anything is
+/// written.
+/// @throws WrongInput, and NotFinished where the memory does not suffice.
+void build_models(const DrapeProblem& problem);
+
 /// The case that the drapes of a plan are of: with its design, if there is one.
 inline const DrapeProblem& planned_problem(const DrapeProblem& given, const PlanResult& result) {
   return result.design ? *result.design->problem : given;

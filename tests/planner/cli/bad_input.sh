@@ -24,6 +24,13 @@ grep -qF 'there is no verb "xyz"; expected "plan", ' "$work/stderr" || fail "ver
 [ -s "$work/stdout" ] && fail "something on stdout without a verb"
 expect 2 map                                         # no case
 expect 2 map "$quick" --threads 0
+# Cases without a fault in themselves that no run could begin: `check` finds them, too.
+expect 2 check "$source/cases/sphere-mapping.json" --set 'mold.radius=60 mm' --json
+same "$(value "$work/stdout" /cases/0/valid)" false "check of a mold that is too small"
+value "$work/stdout" /cases/0/errors/0/message | grep -qF 'the mold ends beyond' || fail "check: $(cat "$work/stdout")"
+refuse 'too large for this outline' check "$source/cases/bias-extension.json" --set 'fem.mesh_size=400 mm'
+expect 0 check "$quick" --set 'mold.extent=[["200 mm", "250 mm"], ["200 mm", "250 mm"]]'
+grep -qF 'warning: the mapped ply reaches' "$work/stdout" || fail "check without the warning: $(cat "$work/stdout")"
 expect 2 map "$quick" --set ply.widht='1 mm'
 grep -qF '/ply/widht: unknown key "widht"; did you mean "width"?' "$work/stderr" || fail "--set error without path"
 expect 2 explain grippers.joint_ofset
