@@ -46,6 +46,7 @@ only_in planner "JSON is for planner's input and results" "${include}<nlohmann/"
 only_in planner/reach "Ipopt is for the reach problem" "${include}[<\"](coin/)?Ip[A-Z]"
 in_one_file "threads live in one file" "${include}<omp\.h>|^[[:space:]]*#[[:space:]]*pragma[[:space:]]+omp"
 in_one_file "VTK files are written in one file" "<VTKFile"
+in_one_file "Assimp stays behind one source" "${include}<assimp/Importer"
 in_one_file "NLopt stays behind one source" "${include}<nlopt"
 
 allowed=" CMakeLists.txt CMakePresets.json LICENSE README.md cases fem mapping planner scripts tests "
