@@ -113,6 +113,8 @@ class NormalEquations {
     if (factors.info() != Eigen::Success)
       throw std::runtime_error("mold: the equations of its surface are singular");
     const Eigen::VectorXd solution = factors.solve(right_);
+    if (!solution.allFinite())
+      throw std::runtime_error("mold: the equations of its surface have no finite solution");
     return solution.reshaped<Eigen::RowMajor>(rows_, columns_);
   }
 

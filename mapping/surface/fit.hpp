@@ -21,7 +21,7 @@ struct FitPoint {
 /// @param points  inside `extent`, at least one.
 /// @param cells  along x and y, each at least 1; the grid has kSplineMargin more on every side.
 /// @param smoothing  the length [m], > 0.
-/// @throws std::runtime_error if the equations are singular to round-off.
+/// @throws std::runtime_error if the equations are singular to round-off or have no finite solution.
 /// Source: Eilers, Marx, "Flexible smoothing with B-splines and penalties" (1996); differs: the penalty is
 /// the integral of derivatives, as of thin plates, not one of differences.
 SplineShape fit_spline(const std::vector<FitPoint>& points, const Extent& extent,

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <map>
+#include <limits>
+#include <utility>
 
 #include "mapping/surface/fit.hpp"
 
@@ -32,6 +34,7 @@ constexpr double kSmoothing =
 constexpr double kFirstCells = 2;  // cell over spacing of vertices
 constexpr int kFewestCells = 8;    // along the longer side
 constexpr int kMostCoefficients = 26000;  // some seconds of one core; the longest fit that a user waits for
+constexpr int kCoefficientsBeyondCells = 3;  // along one side of a cubic spline
 constexpr double kExact = 1e-6;           // [m] vertices that are met so well are met exactly
 constexpr double kWellBelowFacets = 0.05;
 constexpr double kWorthHalving = 0.5;  // halved cells must lower what is missed at least by this factor
@@ -208,11 +211,10 @@ class SurfaceFitter {
   void refine() {
     const Eigen::Vector2d size = result_.extent.upper - result_.extent.lower;
     double cell = std::min(kFirstCells * std::sqrt(vertex_area_), size.maxCoeff() / kFewestCells);
+    while (coefficients_for(cell) > kMostCoefficients) cell *= 2;
     double missed = std::numeric_limits<double>::infinity();
-    while (true) {
-      const Eigen::Vector2i cells = (size / cell).array().ceil().max(1.0).cast<int>();
-      const Eigen::Array2d all = cells.cast<double>().array() + 2 * kSplineMargin + 3;
-      if (all.prod() > kMostCoefficients && std::isfinite(missed)) return;
+    while (coefficients_for(cell) <= kMostCoefficients) {
+      const Eigen::Vector2i cells = cells_for(cell).cast<int>();
       SplineShape spline = fit_spline(points_for(cells), result_.extent, cells, kSmoothing * cell);
       const SplinePatches patches(spline);
       const Deviation vertices = deviation(patches, vertices_), facets = deviation(patches, facets_);
@@ -225,6 +227,15 @@ class SurfaceFitter {
       if (!worth || missed <= std::max(kExact, kWellBelowFacets * facets.largest)) return;
       cell /= 2;
     }
+  }
+
+  /// Along x and y, of this size at most.
+  [[nodiscard]] Eigen::Vector2d cells_for(double cell) const {
+    return ((result_.extent.upper - result_.extent.lower) / cell).array().ceil().max(1.0);
+  }
+
+  [[nodiscard]] double coefficients_for(double cell) const {
+    return (cells_for(cell).array() + (2 * kSplineMargin + kCoefficientsBeyondCells)).prod();
   }
 
   /// The vertices, and with little weight the surface in the middle of every cell.

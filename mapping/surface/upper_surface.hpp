@@ -36,6 +36,7 @@ struct UpperSurface {
 /// grid begins with cells of two spacings of vertices and is halved until the vertices are met within 1 um,
 /// or within a twentieth of what the facets are off; or until halving no longer halves what is missed.
 /// @param triangles  any number, also none.
+/// @throws std::runtime_error where sizes are so extreme that the fit has no finite solution.
 /// @param wanted  part of the plane that the mold covers [m]; absent: the bounding box.
 UpperSurface upper_surface(const Triangles& triangles, const std::optional<Extent>& wanted);
 

@@ -47,7 +47,11 @@ MoldReading read_mold_file(const std::filesystem::path& file, const std::string&
   reading.errors = std::move(read.errors);
   if (!reading.errors.empty()) return reading;
   place(read.triangles, options);
-  reading.surface = upper_surface(read.triangles, options.extent);
+  try {
+    reading.surface = upper_surface(read.triangles, options.extent);
+  } catch (const std::runtime_error& error) {
+    reading.errors.push_back({file.string(), 0, "", error.what()});
+  }
   for (const std::string& fault : reading.surface.faults)
     reading.errors.push_back({file.string(), 0, "", fault});
   if (reading.errors.empty())

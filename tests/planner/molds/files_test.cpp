@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "planner/molds/height_file.hpp"
+#include "planner/molds/mold_file.hpp"
 #include "planner/molds/spline_text.hpp"
 #include "tests/mapping/surface/meshes.hpp"
 #include "tests/planner/molds/kit.hpp"
@@ -102,6 +104,31 @@ TEST(HeightFile, FaultsNameFileAndLine) {
   std::string scattered;
   for (int k = 0; k < 60; ++k) scattered += fmt::format("{} {} 1\n", std::sin(k), std::cos(3 * k));
   expect_error(read(scattered), "they lie on no rectangular grid");
+}
+
+TEST(DamagedMold, IsReadOrRefusedWithItsName) {
+  const ScratchFolder folder;
+  const Triangles mesh = triangulated(dish, kBox, 6, 4);
+  std::mt19937 random(5);
+  int good = 0, refused = 0;
+  for (const auto& [name, text] :
+       {std::pair("a.stl", text_stl(mesh)), std::pair("b.stl", binary_stl(mesh)),
+        std::pair("c.obj", obj(mesh)), std::pair("d.ply", ply(mesh)), std::pair("e.csv", points_csv(mesh))}) {
+    for (int k = 0; k < 60; ++k) {
+      std::string damaged = text;
+      for (int change = 0; change < 3; ++change) damaged[random() % damaged.size()] = char(random() % 256);
+      if (k % 5 == 0) damaged.resize(random() % damaged.size());
+      const auto file = folder.write(name, damaged);
+      const MoldReading reading = read_mold_file(file, name, {.heights = file.extension() == ".csv"});
+      (reading.errors.empty() ? good : refused) += 1;
+      for (const InputError& error : reading.errors) EXPECT_NE(error.text().find(name), std::string::npos);
+      if (reading.errors.empty()) {
+        EXPECT_STREQ(spline_fault(reading.surface.spline), "");
+      }
+    }
+  }
+  EXPECT_GT(good, 10);
+  EXPECT_GT(refused, 10);
 }
 
 TEST(SplineText, KeepsEveryBitAndRefusesWhatItDidNotWrite) {
