@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "mapping/error.hpp"
@@ -295,6 +296,11 @@ Mold::Mold(Shape shape, Extent extent) : shape_(std::move(shape)), extent_(std::
               throw WrongInput("mold: azimuth of the cylinder is not finite");
             }
           },
+          [this](const SplineShape& s) {
+            const std::string fault = spline_fault(s);
+            if (!fault.empty()) throw WrongInput("mold: the spline " + fault);
+            patches_ = SplinePatches(s);
+          },
       },
       shape_);
 }
@@ -305,6 +311,7 @@ Jet Mold::jet(double x, double y) const {
                         [&](const PolynomialShape&) { return polynomial_jet(dense_, x, y); },
                         [&](const SphereShape& s) { return sphere_jet(s, x, y); },
                         [&](const CylinderShape& s) { return cylinder_jet(s, x, y); },
+                        [&](const SplineShape&) { return patches_.jet(x, y); },
                     },
                     shape_);
 }
@@ -315,6 +322,7 @@ void Mold::heights(int n, const double* x, const double* y, double* z, double* z
                  [&](const PolynomialShape&) { polynomial_heights(dense_, n, x, y, z, zx, zy); },
                  [&](const SphereShape& s) { sphere_heights(s, n, x, y, z, zx, zy); },
                  [&](const CylinderShape& s) { cylinder_heights(s, n, x, y, z, zx, zy); },
+                 [&](const SplineShape&) { patches_.heights(n, x, y, z, zx, zy); },
              },
              shape_);
 }

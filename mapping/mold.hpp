@@ -5,15 +5,10 @@
 #include <variant>
 #include <vector>
 
-namespace drapeplan {
+#include "mapping/surface/height_field.hpp"
+#include "mapping/surface/spline.hpp"
 
-/// Height and its partial derivatives up to third order at one point (x, y). Metre based SI units.
-struct Jet {
-  double z = 0;                                   ///< [m]
-  double zx = 0, zy = 0;                          ///< [-]
-  double zxx = 0, zxy = 0, zyy = 0;               ///< [1/m]
-  double zxxx = 0, zxxy = 0, zxyy = 0, zyyy = 0;  ///< [1/m^2]
-};
+namespace drapeplan {
 
 /// z = sum of coefficient * x^i * y^j; a coefficient has the unit m^(1-i-j). [Krogh], Eq. (1).
 struct PolynomialShape {
@@ -42,11 +37,6 @@ struct CylinderShape {
   double radius = 1;                ///< [m]
 };
 
-/// The part of the x-y plane that the mold covers [m]; the height field itself extends beyond it.
-struct Extent {
-  Eigen::Vector2d lower{0, 0}, upper{0, 0};
-};
-
 /// Foot of the perpendicular from a point onto the mold.
 struct ClosestPoint {
   Eigen::Vector3d foot;        ///< on the mold [m]
@@ -58,9 +48,10 @@ struct ClosestPoint {
 /// A mold is a value: copy it, share it const between threads.
 class Mold {
  public:
-  using Shape = std::variant<PlaneShape, PolynomialShape, SphereShape, CylinderShape>;
+  using Shape = std::variant<PlaneShape, PolynomialShape, SphereShape, CylinderShape, SplineShape>;
 
-  /// @throws std::invalid_argument for an empty extent, a radius <= 0 or |angle| >= pi/2.
+  /// @throws std::invalid_argument for an empty extent, a radius <= 0, |angle| >= pi/2 or a spline with a
+  /// fault.
   Mold(Shape shape, Extent extent);
 
   [[nodiscard]] const Extent& extent() const { return extent_; }
@@ -89,6 +80,7 @@ class Mold {
   Shape shape_;
   Extent extent_;
   Eigen::MatrixXd dense_;  ///< polynomial only: coefficient of x^i y^j at (i, j)
+  SplinePatches patches_;  ///< spline only
 };
 
 }  // namespace drapeplan

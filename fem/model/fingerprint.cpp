@@ -7,6 +7,13 @@ namespace {
 
 /// A mold has no list of numbers of its own: heights tell molds apart, whatever their shape.
 void add_mold(Fnv1a& hash, const Mold& mold) {
+  // A spline may differ between the samples only.
+  if (const auto* spline = std::get_if<SplineShape>(&mold.shape())) {
+    for (const double value :
+         {spline->origin.x(), spline->origin.y(), spline->spacing.x(), spline->spacing.y()})
+      hash.add(value);
+    for (const double value : spline->coefficients.reshaped()) hash.add(value);
+  }
   constexpr int kSamples = 17;  // per side
   const Extent& extent = mold.extent();
   for (int i = 0; i < kSamples; ++i) {

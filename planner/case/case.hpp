@@ -160,6 +160,7 @@ struct Case {
   Start start = Start::level;  ///< of a ply without grippers
   double start_height = 0;     ///< height of the level ply without grippers [m]
   std::optional<Mold> mold;
+  std::string mold_source;         ///< what a mold from a file was fitted to, and how well; may be empty
   std::optional<double> friction;  ///< Coulomb coefficient between ply and mold
   std::optional<double> tack;      ///< of the ply on the mold, with friction [Pa]
   std::optional<MappingOptions> mapping;

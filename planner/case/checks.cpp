@@ -292,7 +292,7 @@ void check_rates(FieldReader& reader, const std::string& mode, const CurveFields
 /// A ply that is mapped is measured there, with a warning; one that is only laid down must lie on the mold.
 void check_on_mold(const CaseFields& fields, FieldReader& reader) {
   const Case& c = fields.definition;
-  if (!fields.mold || !fields.material || c.mapping || !reader.good("/mold/extent")) return;
+  if (!fields.mold || !fields.material || c.mapping || !reader.good("/mold")) return;
   const Extent& extent = fields.mold->extent;
   double beyond = 0;
   for (const Eigen::Vector2d& corner : corners_of(c.ply)) {

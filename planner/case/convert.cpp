@@ -76,40 +76,6 @@ std::vector<double> given_lengths(const RigOptions& rig, const InterlinkLength& 
   return lengths;
 }
 
-Mold::Shape shape_of(const MoldFields& m) {
-  switch (m.shape) {
-    case 0:
-      return PlaneShape{m.angle};
-    case 2:
-      return SphereShape{m.centre, m.radius};
-    case 3:
-      return CylinderShape{m.centre, m.azimuth, m.radius};
-    default:
-      break;
-  }
-  PolynomialShape shape{m.terms};
-  for (PolynomialShape::Term& term : shape.terms) term.coefficient *= std::pow(m.unit, 1 - term.i - term.j);
-  return shape;
-}
-
-MoldFields mold_fields(const Mold& mold) {
-  MoldFields m;
-  m.shape = int(mold.shape().index());
-  m.extent = mold.extent();
-  if (const auto* plane = std::get_if<PlaneShape>(&mold.shape())) m.angle = plane->angle;
-  if (const auto* polynomial = std::get_if<PolynomialShape>(&mold.shape())) m.terms = polynomial->terms;
-  if (const auto* sphere = std::get_if<SphereShape>(&mold.shape())) {
-    m.centre = sphere->centre;
-    m.radius = sphere->radius;
-  }
-  if (const auto* cylinder = std::get_if<CylinderShape>(&mold.shape())) {
-    m.centre = cylinder->centre;
-    m.azimuth = cylinder->azimuth;
-    m.radius = cylinder->radius;
-  }
-  return m;
-}
-
 }  // namespace
 
 Curve scaled(const Curve& original, double factor) {
@@ -170,7 +136,10 @@ void complete_case(CaseFields& fields) {
       links.lengths = given_lengths(*c.grippers, c.interlink_length);
   }
   if (fields.damping) c.damping = alpha_of(*fields.damping, fields.material);
-  if (fields.mold) c.mold.emplace(shape_of(*fields.mold), fields.mold->extent);
+  if (fields.mold) {
+    c.mold.emplace(mold_of(*fields.mold));
+    c.mold_source = fields.mold->source;
+  }
   c.chooses_fidelities = !fields.states_numerics && c.grippers && c.mold && fields.material;
   if (c.chooses_fidelities) c.fidelities = fidelities_from_sizes(c);
   c.fidelities.try_emplace("report", fields.fem);
@@ -185,7 +154,7 @@ CaseFields fields_of(const Case& definition) {
   }
   if (definition.material.thickness > 0)
     fields.material = material_fields(definition.material, definition.material_notes);
-  if (definition.mold) fields.mold = mold_fields(*definition.mold);
+  if (definition.mold) fields.mold = mold_fields(*definition.mold, definition.mold_source);
   if (definition.damping) fields.damping.emplace().alpha = *definition.damping;
   const auto report = fields.definition.fidelities.find("report");
   if (report != fields.definition.fidelities.end()) {

@@ -9,21 +9,10 @@
 
 #include "planner/case/case.hpp"
 #include "planner/input/field.hpp"
+#include "planner/molds/mold_fields.hpp"
 #include "planner/tables/curve_file.hpp"
 
 namespace drapeplan {
-
-/// The mold as the file states it.
-struct MoldFields {
-  int shape = 1;  ///< index of Mold::Shape
-  Extent extent;
-  double angle = 0;
-  double unit = 1;
-  std::vector<PolynomialShape::Term> terms;
-  Eigen::Vector3d centre{0, 0, 0};
-  double radius = 0;
-  double azimuth = 0;
-};
 
 /// The curve at one rate, as the file states it.
 struct RateFields {

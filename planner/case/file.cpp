@@ -1,5 +1,6 @@
 #include "planner/case/file.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "planner/case/checks.hpp"
@@ -23,6 +24,11 @@ CaseReading read_document(const InputDocument& document, const std::string& name
   reader.read([&fields](FieldVisitor& visitor) { visit_case(visitor, fields); });
   if (fields.material) reading.notes = read_curve_files(*fields.material, "/material", reader);
   complete_ply(fields);
+  if (fields.mold) {
+    const std::vector<std::string> notes = read_mold_of_file(
+        *fields.mold, std::max(fields.definition.ply.width, fields.definition.ply.height), reader);
+    reading.notes.insert(reading.notes.end(), notes.begin(), notes.end());
+  }
   check_case(fields, reader);
   reading.errors.insert(reading.errors.end(), reader.errors().begin(), reader.errors().end());
   document.sort(reading.errors);

@@ -15,7 +15,7 @@ namespace drapeplan {
 struct CaseReading {
   Case definition;                 ///< only meaningful without errors
   std::vector<InputError> errors;  ///< all of them, in the order of the file
-  std::vector<std::string> notes;  ///< tables of curves that were smoothed, and what the curves miss
+  std::vector<std::string> notes;  ///< on curves and molds that were fitted to files, and what they miss
 };
 
 /// Reads and checks a case file with its `path=value` overrides (dots between keys; the value is JSON or a

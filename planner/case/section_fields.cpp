@@ -165,51 +165,6 @@ std::vector<std::string> read_curve_files(MaterialFields& material, const std::s
   return notes;
 }
 
-void visit_mold(FieldVisitor& v, MoldFields& m) {
-  v.field({"shape",
-           choice(m.shape, {"plane", "polynomial", "sphere", "cylinder"}),
-           "`plane` through the origin; `polynomial` height field; upper half of a `sphere` or a lying "
-           "`cylinder`",
-           Dimension::none,
-           {},
-           true});
-  v.field({"extent",
-           &m.extent,
-           "Part of the x-y plane that the mold covers: [[x0, x1], [y0, y1]]",
-           Dimension::length,
-           {},
-           true});
-  v.alternative("shape", "plane", m.shape == 0, [&] {
-    v.field({"angle",
-             &m.angle,
-             "The plane falls by it towards +x",
-             Dimension::angle,
-             {-kRightAngle, kRightAngle, true, true}});
-  });
-  v.alternative("shape", "polynomial", m.shape == 1, [&] {
-    v.field({"unit", &m.unit, "Length L in z/L = sum of coefficient (x/L)^x (y/L)^y", Dimension::length,
-             positive()});
-    ObjectList terms =
-        object_list("terms", "Terms of the height", m.terms, [&v](PolynomialShape::Term& term) {
-          v.field({"x", &term.i, "Power of x", Dimension::none, from(0, 12), true});
-          v.field({"y", &term.j, "Power of y", Dimension::none, from(0, 12), true});
-          v.field({"coefficient", &term.coefficient, "Dimensionless, see `unit`", Dimension::none, {}, true});
-        });
-    terms.required = true;
-    v.list(terms);
-  });
-  const auto round = [&] {
-    v.field(
-        {"centre", &m.centre, "Centre of the sphere, or a point of the cylinder's axis", Dimension::length});
-    v.field({"radius", &m.radius, "Of the sphere or cylinder", Dimension::length, positive(1e3), true});
-  };
-  v.alternative("shape", "sphere", m.shape == 2, round);
-  v.alternative("shape", "cylinder", m.shape == 3, [&] {
-    round();
-    v.field({"azimuth", &m.azimuth, "Direction of the axis, from +x towards +y", Dimension::angle});
-  });
-}
-
 void visit_damping(FieldVisitor& v, DampingFields& d) {
   v.field({"by", choice(d.by, {"alpha", "strip"}),
            "`alpha`: the rate itself; `strip`: from the lowest frequency of a clamped strip"});

@@ -1,4 +1,4 @@
-// Fields of what a case is made of: fabric, damping, mold and gripper grid; parts of the one statement of
+// Fields of what a case is made of: fabric, damping and gripper grid; parts of the one statement of
 // fields.hpp.
 #pragma once
 
@@ -19,7 +19,6 @@ void visit_material(FieldVisitor& visitor, MaterialFields& material);
 std::vector<std::string> read_curve_files(MaterialFields& material, const std::string& pointer,
                                           FieldReader& reader);
 
-void visit_mold(FieldVisitor& visitor, MoldFields& mold);
 void visit_damping(FieldVisitor& visitor, DampingFields& damping);
 
 /// The gripper grid; what `c` says of interlinks beside the rig.

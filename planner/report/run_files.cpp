@@ -100,6 +100,8 @@ std::vector<std::string> notes_of(const DrapeProblem& problem, const Drape& best
        {&material.source, &material.tension.source, &material.compression.source, &material.shear.source}) {
     if (!source->empty()) notes.push_back(*source);
   }
+  if (const std::string& mold = problem.definition().mold_source; !mold.empty())
+    notes.push_back("Mold: " + mold);
   if (const std::string& rig = problem.definition().grippers_source; !rig.empty()) notes.push_back("Grippers: " + rig);
   return notes;
 }

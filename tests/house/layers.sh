@@ -5,9 +5,9 @@ set -uo pipefail
 cd "$1" || exit 1
 
 # All rooms, from the ground up: a source may include what lies in its own room and in those before it.
-rooms=(mapping
+rooms=(mapping/surface mapping
   fem/{core,mesh,law,shell,rig,terms,model,run}
-  planner/{base,input,tables,case,score,reach,schedule,drape,stress,method,search,trust,diagnosis,report,views,study,measured,characterise,validate,cli})
+  planner/{base,input,tables,molds,case,score,reach,schedule,drape,stress,method,search,trust,diagnosis,report,views,study,measured,characterise,validate,cli})
 least_files=4 most_files=15
 
 failures=0
@@ -46,6 +46,7 @@ only_in planner "JSON is for planner's input and results" "${include}<nlohmann/"
 only_in planner/reach "Ipopt is for the reach problem" "${include}[<\"](coin/)?Ip[A-Z]"
 in_one_file "threads live in one file" "${include}<omp\.h>|^[[:space:]]*#[[:space:]]*pragma[[:space:]]+omp"
 in_one_file "VTK files are written in one file" "<VTKFile"
+in_one_file "Assimp stays behind one source" "${include}<assimp/Importer"
 in_one_file "NLopt stays behind one source" "${include}<nlopt"
 
 allowed=" CMakeLists.txt CMakePresets.json LICENSE README.md cases fem mapping planner scripts tests "

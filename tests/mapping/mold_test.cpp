@@ -26,7 +26,8 @@ std::vector<Scene> all_shapes() {
            Mold(PolynomialShape{{{5, 0, 3.0}, {2, 3, -7.0}, {0, 1, 0.3}, {1, 4, 2.0}}}, {{0, 0}, {1, 1}})},
           {"degree 9", Mold(PolynomialShape{{{6, 3, 5.0}, {0, 7, -2.0}, {4, 0, 0.3}}}, {{0, 0}, {1, 1}})},
           {"sphere", sphere({0.1, 0.3, -0.2}, 0.7)},
-          {"cylinder", cylinder({0.2, 0.1, 0.05}, 0.6, 0.8)}};
+          {"cylinder", cylinder({0.2, 0.1, 0.05}, 0.6, 0.8)},
+          {"spline", spline_mold()}};
 }
 
 double central(const Mold& mold, double Jet::*of, double x, double y, bool along_x) {
@@ -175,6 +176,10 @@ TEST(Mold, RefusesWhatIsNoMold) {
   EXPECT_THROW(Mold(CylinderShape{{0, 0, 0}, 0, std::nan("")}, unit), std::invalid_argument);
   EXPECT_THROW(Mold(PolynomialShape{{{-1, 0, 1.0}}}, unit), std::invalid_argument);
   EXPECT_THROW(Mold(PolynomialShape{{{1, 0, std::nan("")}}}, unit), std::invalid_argument);
+  EXPECT_THROW(Mold(SplineShape{}, unit), std::invalid_argument);
+  EXPECT_THROW(Mold(SplineShape{{0, 0}, {1, 0}, Eigen::MatrixXd::Zero(4, 4)}, unit), std::invalid_argument);
+  EXPECT_THROW(Mold(SplineShape{{0, 0}, {1, 1}, Eigen::MatrixXd::Constant(4, 4, std::nan(""))}, unit),
+               std::invalid_argument);
   EXPECT_EQ(Mold(PolynomialShape{}, unit).height(0.3, 0.4), 0);
 }
 

@@ -23,6 +23,20 @@ inline Mold cylinder(const Eigen::Vector3d& centre, double azimuth, double radiu
   return Mold(CylinderShape{centre, azimuth, radius}, {centre.head<2>() - half, centre.head<2>() + half});
 }
 
+/// A spline with coefficients on the article's mold and ripples of 1 mm: smooth, and no polynomial.
+inline Mold spline_mold() {
+  const Mold like = article_mold();
+  SplineShape shape{{-0.05, -0.03}, {0.0337, 0.0279}, Eigen::MatrixXd(20, 23)};
+  for (int i = 0; i < shape.coefficients.rows(); ++i) {
+    for (int j = 0; j < shape.coefficients.cols(); ++j) {
+      const Eigen::Vector2d at = shape.origin + shape.spacing.cwiseProduct(Eigen::Vector2d(i - 1, j - 1));
+      shape.coefficients(i, j) =
+          like.height(at.x(), at.y()) + 1e-3 * std::sin(30 * at.x()) * std::cos(25 * at.y());
+    }
+  }
+  return Mold(shape, {{0, 0}, {0.45, 0.45}});
+}
+
 /// Smallest and largest Gaussian curvature on a grid over the extent [1/m^2].
 struct CurvatureRange {
   double smallest = std::numeric_limits<double>::quiet_NaN(), largest = smallest;
