@@ -14,8 +14,9 @@
 #include "planner/drape/acceptance.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/drape/run_checks.hpp"
+#include "planner/page/page.hpp"
 #include "planner/report/charts.hpp"
-#include "planner/report/page.hpp"
+#include "planner/report/page_parts.hpp"
 #include "planner/report/vtu.hpp"
 #include "planner/schedule/file.hpp"
 #include "planner/score/scoring.hpp"
@@ -93,14 +94,9 @@ Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows, c
 std::vector<std::string> notes_of(const DrapeProblem& problem, const Drape& best,
                                   const std::string& fidelity) {
   std::vector<std::string> notes = map_warnings(problem.definition(), problem.mapping());
-  const MaterialNotes& material = problem.definition().material_notes;
-  const std::vector<std::string> beyond = drape_warnings(problem, best, fidelity);
-  notes.insert(notes.end(), beyond.begin(), beyond.end());
-  for (const std::string* source :
-       {&material.source, &material.tension.source, &material.compression.source, &material.shear.source}) {
-    if (!source->empty()) notes.push_back(*source);
-  }
-  if (const std::string& rig = problem.definition().grippers_source; !rig.empty()) notes.push_back("Grippers: " + rig);
+  for (const std::vector<std::string>& more :
+       {drape_warnings(problem, best, fidelity), source_notes(problem.definition())})
+    notes.insert(notes.end(), more.begin(), more.end());
   return notes;
 }
 
@@ -297,6 +293,14 @@ ReportReasons reasons_report(const DrapeProblem& problem, const Drape& drape, co
 
 namespace {
 
+/// The baselines and the winner, for the view in space.
+std::vector<ViewDrape> viewed(const DrapeProblem& problem, const PlanResult& result) {
+  const Scene& report = problem.model(kReport).scene();
+  return {{"uniform", &report, &result.uniform.frames},
+          {"wave", &report, &result.wave.frames},
+          {"optimised", &problem.model(result.search.best_fidelity).scene(), &result.best.frames}};
+}
+
 /// The page of a plan. @param drape, sequence  pictures, as SVG.
 PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,
                    const Diagnosis& diagnosis, const std::string& drape, const std::string& sequence) {
@@ -311,6 +315,10 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   if (!diagnosis.good())
     report.reasons = reasons_report(problem, result.best, search.best_fidelity, diagnosis);
   report.rows = rows_of(problem, result);
+  report.ply_area = ply_area(problem.model(kReport).scene().mesh);
+  const std::vector<ViewDrape> drapes = viewed(problem, result);
+  report.view = space_view(drapes, &problem.mapping());
+  report.tables.push_back(angles_table(drapes, &problem.mapping()));
   if (trust.confirmation) add_finer_rows(*trust.confirmation, report);
   report.notes = notes_of(problem, result.best, search.best_fidelity);
   if (trust.spread) report.tables.push_back(spread_report(*trust.spread));

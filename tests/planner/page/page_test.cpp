@@ -1,4 +1,4 @@
-#include "planner/report/page.hpp"
+#include "planner/page/page.hpp"
 
 #include <gtest/gtest.h>
 
