@@ -72,7 +72,7 @@ std::string score_table(const std::vector<ReportRow>& rows, double ply_area) {
   text += "</tr></thead>\n<tbody>\n";
   for (const ReportRow& row : rows) text += score_row(row, best, ply_area);
   return text +
-         "</tbody>\n<caption>Lower is better; the best value of a column stands out. Gap: between the "
+         "</tbody>\n<caption><span>Lower is better; the best value of a column stands out. Gap: between the "
          "ply\u2019s underside and the mold at the end. Wrinkled area: gap above the threshold where the ply "
          "does not bridge a hollow, below it its share of the ply. Boundary offset: between the ply\u2019s "
          "edge and the prescribed "
@@ -82,7 +82,7 @@ std::string score_table(const std::vector<ReportRow>& rows, double ply_area) {
               ? " Grey rows are scores that the objective does not take, or drapes at a finer setting: they "
                 "are not compared."
               : "") +
-         "</caption>\n</table></div>\n";
+         "</span></caption>\n</table></div>\n";
 }
 
 /// @param title  as markup.
@@ -99,8 +99,8 @@ std::string text_table(const ReportTable& table, const std::string& title) {
       text += fmt::format("<tr{}><td colspan=\"{}\">{}</td></tr>\n", style, table.head.size(),
                           escape_markup(row.note));
   }
-  return text +
-         fmt::format("</tbody>\n<caption>{}</caption>\n</table></div>\n", escape_markup(table.caption));
+  return text + fmt::format("</tbody>\n<caption><span>{}</span></caption>\n</table></div>\n",
+                            escape_markup(table.caption));
 }
 
 std::string paragraph(const std::string& text, const std::string& style = "") {

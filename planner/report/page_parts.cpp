@@ -68,6 +68,27 @@ ReportTable angles_table(const std::vector<ViewDrape>& drapes, const MapResult* 
   return table;
 }
 
+ReportTable folds_table(const Diagnosis& diagnosis, const RigOptions& rig) {
+  ReportTable table{
+      .title = {},
+      .caption =
+          "The highest places, half a spacing of the rig apart at least. Slack is by how much the ply is "
+          "longer than the mold below the fold, along the fibre; below zero it is a chord over a hollow.",
+      .head = {"fold", "kind", "height [mm]", "at u, v [mm]", "along", "slack [mm]", "grippers",
+               "stands since [s]"},
+      .rows = {}};
+  for (const Fold& fold : diagnosis.folds) {
+    std::vector<std::string> names;
+    for (const int g : fold.grippers) names.push_back(rig.name(g));
+    table.rows.push_back({.cells = {fmt::to_string(table.rows.size() + 1), words_of(fold.kind).name,
+                                    fixed(1e3 * fold.height, 2),
+                                    fmt::format("{:.0f}, {:.0f}", 1e3 * fold.at.x(), 1e3 * fold.at.y()),
+                                    fold.fibre == Fibre::warp ? "warp" : "weft", fixed(1e3 * fold.slack, 2),
+                                    fmt::format("{}", fmt::join(names, ", ")), fixed(fold.since, 1)}});
+  }
+  return table;
+}
+
 double ply_area(const Mesh& mesh) {
   const std::vector<double> areas = nodal_areas(mesh);
   return std::accumulate(areas.begin(), areas.end(), 0.0);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "planner/case/case.hpp"
+#include "planner/diagnosis/diagnosis.hpp"
 #include "planner/page/page.hpp"
 #include "planner/page/view.hpp"
 
@@ -17,6 +18,9 @@ std::string space_view(const std::vector<ViewDrape>& drapes, const MapResult* ma
 /// How much of each ply, at its last frame, is within classes of shear and, with a mapping, of the angle
 /// between its fibres and those of the mapped net.
 ReportTable angles_table(const std::vector<ViewDrape>& drapes, const MapResult* mapping);
+
+/// Where the drape stands above the mold, of what kind, and which grippers hold it there.
+ReportTable folds_table(const Diagnosis& diagnosis, const RigOptions& rig);
 
 /// Rest area of the ply [m^2].
 double ply_area(const Mesh& mesh);

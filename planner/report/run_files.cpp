@@ -246,27 +246,6 @@ void add_finer_rows(const Confirmation& confirmation, PlanReport& report) {
   report.verdict += fmt::format(" {}.", capitalised(confirmation_text(confirmation)));
 }
 
-ReportTable folds_report(const Diagnosis& diagnosis, const RigOptions& rig) {
-  ReportTable table{
-      .title = {},
-      .caption =
-          "The highest places, half a spacing of the rig apart at least. Slack is by how much the ply is "
-          "longer than the mold below the fold, along the fibre; below zero it is a chord over a hollow.",
-      .head = {"fold", "kind", "height [mm]", "at u, v [mm]", "along", "slack [mm]", "grippers",
-               "stands since [s]"},
-      .rows = {}};
-  for (const Fold& fold : diagnosis.folds) {
-    std::vector<std::string> names;
-    for (const int g : fold.grippers) names.push_back(rig.name(g));
-    table.rows.push_back({.cells = {fmt::to_string(table.rows.size() + 1), words_of(fold.kind).name,
-                                    fixed(1e3 * fold.height, 2),
-                                    fmt::format("{:.0f}, {:.0f}", 1e3 * fold.at.x(), 1e3 * fold.at.y()),
-                                    fold.fibre == Fibre::warp ? "warp" : "weft", fixed(1e3 * fold.slack, 2),
-                                    fmt::format("{}", fmt::join(names, ", ")), fixed(fold.since, 1)}});
-  }
-  return table;
-}
-
 }  // namespace
 
 ReportReasons reasons_report(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
@@ -288,7 +267,7 @@ ReportReasons reasons_report(const DrapeProblem& problem, const Drape& drape, co
       .remedy = remedy_text(diagnosis, rig),
       .figure = {"Folds by height; the stronger a pad is filled, the more its height or its start matters",
                  drape_picture({panel}, problem.definition().mold->extent())},
-      .folds = folds_report(diagnosis, rig)};
+      .folds = folds_table(diagnosis, rig)};
 }
 
 namespace {
@@ -328,7 +307,7 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   }
   report.figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", drape},
                     {"Who goes down when", sequence},
-                    {"Heights of the joints over time",
+                    {"Heights of the joints over time, in the colours of their arrival",
                      line_chart(height_chart(search.best.schedule, rig, "Optimised sequence"))},
                     {"Best objective against evaluations", line_chart(history_chart(search))}};
   if (const FloorFront& front = problem.ply_floor().front; !front.points.empty()) {
