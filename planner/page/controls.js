@@ -1,6 +1,6 @@
 // The controls of the drape in space, and the picture that they ask for.
 
-const kInk = { mold: "--view-mold", line: "--ink", boundary: "--boundary", rig: "--view-rig", sky: "--view-sky" };
+const kInk = { mold: "--view-mold", line: "--view-line", boundary: "--boundary", rig: "--view-rig", sky: "--view-sky" };
 const bytes = (colour) => [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16));
 
 class DrapeView {

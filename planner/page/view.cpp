@@ -59,8 +59,8 @@ std::vector<double> offset_of(const Scene& scene, const Snapshot& ply, const Map
 const std::array<Field, kFields>& fields() {
   static const std::array<Field, kFields> all{
       {{"gap to the mold", "mm", gap_of, {}},
-       {"shear angle", "\u00b0", shear_of, {{15, "15\u00b0: look"}, {30, "30\u00b0: too much"}}},
-       {"fibre angle off the mapped net", "\u00b0", offset_of, {{3, "3\u00b0"}}}}};
+       {"shear angle", "\u00b0", shear_of, {{15, "15\u00b0 warn"}, {30, "30\u00b0 limit"}}},
+       {"fibre angle off the mapped net", "\u00b0", offset_of, {}}}};
   return all;
 }
 

@@ -96,7 +96,7 @@ class Camera {
   }
   // So far away that all is seen, also in a narrow picture.
   distance(aspect) {
-    return 0.92 * this.radius / Math.sin(0.5 * kFieldOfView) / Math.min(1, aspect) / this.zoom;
+    return 0.92 * this.radius / Math.sin(0.5 * kFieldOfView) / Math.min(1, 0.85 * aspect) / this.zoom;
   }
   axes() {
     const { azimuth, elevation } = this;

@@ -103,7 +103,7 @@ std::string series_colour(const Chart& chart, size_t number) {
                                     "#56b4e9", "#332288", "#882255", "#999933", "#117733",
                                     "#44aa99", "#5b6775", "#1d2733"};
   constexpr size_t kFew = 6;
-  if (!chart.series[number].colour.empty()) return chart.series[number].colour;
+  if (const auto shade = chart.series[number].shade) return sequential_colour(*shade);
   const size_t count = chart.series.size();
   if (chart.side_legend || count <= kFew) return kHues[number % kHues.size()];
   return sequential_colour(0.25 + 0.75 * double(number) / double(count - 1));
@@ -330,7 +330,7 @@ Chart height_chart(const Schedule& schedule, const RigOptions& rig, const std::s
     const auto g = size_t(row.gripper);
     ChartSeries series{.name = schedule.paths.size() <= 6 ? rig.name(row.gripper) : "",
                        .points = {},
-                       .colour = ArrivalScale(rows).colour(row.arrival())};
+                       .shade = ArrivalScale(rows).share(row.arrival())};
     for (int k = 0; k <= kSamples; ++k) {
       const double time = schedule.duration() * k / kSamples;
       series.points.emplace_back(time, 1000 * schedule.command(int(g), time).z);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ struct ChartSeries {
   bool steps = false;  ///< the value holds until the next point
   bool marks = false;  ///< every point of the line is marked
   bool rings = false;  ///< with a ring
-  std::string colour = {};  ///< "#rrggbb"; empty: one that the chart chooses
+  std::optional<double> shade = {};  ///< share of `sequential_colour`; absent: the chart chooses a colour
 };
 
 struct Chart {
