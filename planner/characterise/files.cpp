@@ -8,8 +8,8 @@
 
 #include "planner/base/json_text.hpp"
 #include "planner/base/text.hpp"
+#include "planner/page/page.hpp"
 #include "planner/report/charts.hpp"
-#include "planner/report/page.hpp"
 
 namespace drapeplan {
 namespace {

@@ -163,7 +163,9 @@ int simulate_free(const Case& definition, const SimulateOptions& options) {
              if (files) {
                write_frames(options.common.out, "ply", model.scene().mesh, frames,
                             definition.mold ? &*definition.mold : nullptr, definition.material.thickness);
-               write_run(options.common.out, definition, model, recorder, run);
+               DrapePage page;
+               page.frames = &frames;
+               write_run(options.common.out, definition, model, recorder, run, std::move(page));
              }
              deliver(result, text, options.common, &definition);
            });
@@ -230,6 +232,8 @@ void write_drape(const std::filesystem::path& folder, const DrapeProblem& proble
   const std::vector<ReportRow> own = drape_rows(options.schedule, drape);
   page.rows.insert(page.rows.end(), own.begin(), own.end());
   if (!diagnosis.good()) page.reasons = reasons_report(problem, drape, options.fidelity, diagnosis);
+  page.frames = &drape.frames;
+  page.mapping = &problem.mapping();
   write_run(folder, definition, model, recorder, drape.run, std::move(page));
 }
 

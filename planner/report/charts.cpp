@@ -63,6 +63,21 @@ Axis decades(double smallest, double largest, double start, double length) {
   return axis;
 }
 
+/// The paper of a plot, with what is drawn on it; its colours stay as they are where a page is dark. Points
+/// on its limits are seen whole. @param draw  is called with the axes as they are inside.
+template <class Draw>
+void draw_paper(Svg& svg, Axis x, Axis y, const Draw& draw) {
+  constexpr double kRim = 7;  // [px]
+  const Vector2d corner(x.start - kRim, y.start + y.length - kRim);
+  const Vector2d size(x.length + 2 * kRim, 2 * kRim - y.length);
+  svg.open_window(corner, size);
+  svg.rectangle({0, 0}, size, {.fill = ink::kSurface});
+  x.start -= corner.x();
+  y.start -= corner.y();
+  draw(x, y);
+  svg.close_window();
+}
+
 void draw_axes(Svg& svg, const Axis& x, const Axis& y, const std::string& x_label,
                const std::string& y_label) {
   const Svg::TextStyle tick{.size = 11, .anchor = Svg::Anchor::middle, .colour = ink::kSoft};
@@ -70,17 +85,14 @@ void draw_axes(Svg& svg, const Axis& x, const Axis& y, const std::string& x_labe
   left.anchor = Svg::Anchor::end;
   const double x_end = x.start + x.length;
   for (int k = 0; k <= y.ticks(); ++k) {
-    const double place = y.along(y.tick(k));
-    svg.line({x.start, place}, {x_end, place}, {.stroke = ink::kGrid});
-    svg.text({x.start - 8, place + 4}, y.label(k), left);
+    svg.text({x.start - 12, y.along(y.tick(k)) + 4}, y.label(k), left);
   }
   for (int k = 0; k <= x.ticks(); ++k) {
     const double place = x.along(x.tick(k));
-    svg.line({place, y.start}, {place, y.start + 4}, {.stroke = ink::kSoft});
-    svg.text({place, y.start + 18}, x.label(k), tick);
+    svg.line({place, y.start + 7}, {place, y.start + 11}, {.stroke = ink::kSoft});
+    svg.text({place, y.start + 24}, x.label(k), tick);
   }
-  svg.line({x.start, y.start}, {x_end, y.start}, {.stroke = ink::kSoft});
-  svg.text({x_end, y.start + 36}, x_label, {.size = 12, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
+  svg.text({x_end, y.start + 41}, x_label, {.size = 12, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
   svg.text({x.start - 44, y.start + y.length - 12}, y_label, {.size = 12, .colour = ink::kSoft});
 }
 
@@ -91,6 +103,7 @@ std::string series_colour(const Chart& chart, size_t number) {
                                     "#56b4e9", "#332288", "#882255", "#999933", "#117733",
                                     "#44aa99", "#5b6775", "#1d2733"};
   constexpr size_t kFew = 6;
+  if (const auto shade = chart.series[number].shade) return sequential_colour(*shade);
   const size_t count = chart.series.size();
   if (chart.side_legend || count <= kFew) return kHues[number % kHues.size()];
   return sequential_colour(0.25 + 0.75 * double(number) / double(count - 1));
@@ -105,6 +118,13 @@ std::vector<Vector2d> drawn_points(const Chart& chart, const ChartSeries& series
     points.push_back(p);
   }
   return points;
+}
+
+void draw_grid_lines(Svg& svg, const Axis& x, const Axis& y) {
+  for (int k = 0; k <= y.ticks(); ++k) {
+    const double place = y.along(y.tick(k));
+    svg.line({x.start, place}, {x.start + x.length, place}, {.stroke = k == 0 ? ink::kSoft : ink::kGrid});
+  }
 }
 
 void draw_series(Svg& svg, const Axis& x, const Axis& y, const Chart& chart, size_t number) {
@@ -128,9 +148,8 @@ void draw_top_legend(Svg& svg, const Chart& chart, double right, double left) {
   for (size_t k = chart.series.size(); k-- > 0;) {
     const ChartSeries& series = chart.series[k];
     if (series.name.empty()) continue;
-    // Mean width of a letter at this size, in a wide font; a dot and its distance; height of a row.
-    constexpr double kLetter = 7, kDot = 10, kRow = 18;
-    const double wide = kDot + kLetter * double(series.name.size());
+    constexpr double kDot = 10, kRow = 18;  // a dot and its distance; height of a row
+    const double wide = kDot + text_width(series.name, 12);
     if (legend - wide < left) legend = right, base -= kRow;
     svg.text({legend - wide + kDot, base}, series.name, {.size = 12, .colour = ink::kSoft});
     svg.circle({legend - wide, base - 4}, 4, {.fill = series_colour(chart, k)});
@@ -222,14 +241,11 @@ class ArrivalScale {
   double first_, last_;
 };
 
-void draw_bars(Svg& svg, const std::vector<Row>& rows, const RigOptions& rig, const Axis& x, double top,
-               double pitch) {
+void draw_bars(Svg& svg, const std::vector<Row>& rows, const Axis& x, double top, double pitch) {
   const ArrivalScale scale(rows);
   for (size_t r = 0; r < rows.size(); ++r) {
     const Row& row = rows[r];
     const double y = top + double(r) * pitch;
-    svg.text({x.start - 10, y + 0.5 * pitch + 4}, rig.name(row.gripper),
-             {.size = 11, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
     for (size_t k = 0; k < row.strokes.size(); ++k) {
       const Stroke& stroke = row.strokes[k];
       const double from = x.at(stroke.start), width = std::max(1.0, x.at(stroke.end) - from);
@@ -252,14 +268,18 @@ void draw_grid(Svg& svg, const std::vector<Row>& rows, const RigOptions& rig, co
                double cell) {
   const ArrivalScale scale(rows);
   svg.text(corner - Vector2d(0, 12), "arrival from above [s]", {.size = 12, .colour = ink::kSoft});
+  const Vector2d size = cell * Vector2d(rig.columns, rig.rows);
+  svg.open_window(corner, size);
+  svg.rectangle({0, 0}, size, {.fill = ink::kSurface});
   for (const Row& row : rows) {
     const int i = row.gripper % rig.columns, j = row.gripper / rig.columns;
-    const Vector2d centre = corner + cell * Vector2d(i + 0.5, rig.rows - j - 0.5);
+    const Vector2d centre = cell * Vector2d(i + 0.5, rig.rows - j - 0.5);
     svg.circle(centre, 0.42 * cell,
                {.fill = scale.colour(row.arrival()), .stroke = ink::kSoft, .width = 0.6});
     svg.text(centre + Vector2d(0, 4), fixed(row.arrival(), 1),
              {.size = 11, .anchor = Svg::Anchor::middle, .colour = scale.text_colour(row.arrival())});
   }
+  svg.close_window();
   for (int i = 0; i < rig.columns; ++i) {
     svg.text(corner + cell * Vector2d(i + 0.5, rig.rows) + Vector2d(0, 14), fmt::to_string(i + 1),
              {.size = 10, .anchor = Svg::Anchor::middle, .colour = ink::kSoft});
@@ -290,7 +310,10 @@ std::string line_chart(const Chart& chart) {
   Svg svg(chart.width, chart.height, chart.title);
   svg.text({18, 26}, chart.title, {.size = 15, .bold = true});
   draw_axes(svg, x, y, chart.x_label, chart.y_label);
-  for (size_t k = 0; k < chart.series.size(); ++k) draw_series(svg, x, y, chart, k);
+  draw_paper(svg, x, y, [&](const Axis& across, const Axis& up) {
+    draw_grid_lines(svg, across, up);
+    for (size_t k = 0; k < chart.series.size(); ++k) draw_series(svg, across, up, chart, k);
+  });
   if (chart.side_legend) {
     draw_side_legend(svg, chart, {chart.width - right + 24, kTop + 4});
   } else {
@@ -302,8 +325,12 @@ std::string line_chart(const Chart& chart) {
 Chart height_chart(const Schedule& schedule, const RigOptions& rig, const std::string& title) {
   constexpr int kSamples = 200;
   Chart chart{title, "time [s]", "joint height [mm]", {}};
-  for (size_t g = 0; g < schedule.paths.size(); ++g) {
-    ChartSeries series{schedule.paths.size() <= 6 ? rig.name(int(g)) : "", {}};
+  const std::vector<Row> rows = sequence(schedule);
+  for (const Row& row : rows) {
+    const auto g = size_t(row.gripper);
+    ChartSeries series{.name = schedule.paths.size() <= 6 ? rig.name(row.gripper) : "",
+                       .points = {},
+                       .shade = ArrivalScale(rows).share(row.arrival())};
     for (int k = 0; k <= kSamples; ++k) {
       const double time = schedule.duration() * k / kSamples;
       series.points.emplace_back(time, 1000 * schedule.command(int(g), time).z);
@@ -327,17 +354,24 @@ std::string schedule_picture(const Schedule& schedule, const RigOptions& rig, co
   svg.text({18, 26}, title, {.size = 15, .bold = true});
   svg.text({18, 46}, "strokes of the grippers [i, j] in order of arrival; grey: before the last descent",
            {.size = 12, .colour = ink::kSoft});
-  const double bottom = kTop + kPitch * double(rows.size());
-  const int steps = int(std::lround((x.to - x.from) / x.step));
-  for (int k = 0; k <= steps; ++k) {
-    const double time = x.from + k * x.step;
-    svg.line({x.at(time), kTop - 4}, {x.at(time), bottom + 4}, {.stroke = ink::kGrid});
-    svg.text({x.at(time), bottom + 20}, fixed(time, decimals_of(x.step)),
+  const double length = kPitch * double(rows.size()), bottom = kTop + length;
+  draw_paper(svg, x, {.start = bottom, .length = -length}, [&](const Axis& across, const Axis& up) {
+    for (int k = 0; k <= x.ticks(); ++k) {
+      const double place = across.along(x.tick(k));
+      svg.line({place, up.start}, {place, up.start - length}, {.stroke = ink::kGrid});
+    }
+    draw_bars(svg, rows, across, up.start - length, kPitch);
+  });
+  for (int k = 0; k <= x.ticks(); ++k) {
+    svg.text({x.along(x.tick(k)), bottom + 24}, x.label(k),
              {.size = 11, .anchor = Svg::Anchor::middle, .colour = ink::kSoft});
   }
-  svg.text({kLeft + kBars, bottom + 38}, "time [s]",
+  for (size_t r = 0; r < rows.size(); ++r) {
+    svg.text({x.start - 12, kTop + (double(r) + 0.5) * kPitch + 4}, rig.name(rows[r].gripper),
+             {.size = 11, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
+  }
+  svg.text({kLeft + kBars, bottom + 42}, "time [s]",
            {.size = 12, .anchor = Svg::Anchor::end, .colour = ink::kSoft});
-  draw_bars(svg, rows, rig, x, kTop, kPitch);
   draw_grid(svg, rows, rig, {kLeft + kBars + kGap, kTop}, kCell);
   return svg.finish();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct ChartSeries {
   bool steps = false;  ///< the value holds until the next point
   bool marks = false;  ///< every point of the line is marked
   bool rings = false;  ///< with a ring
+  std::optional<double> shade = {};  ///< share of `sequential_colour`; absent: the chart chooses a colour
 };
 
 struct Chart {
@@ -31,7 +33,8 @@ struct Chart {
 /// SVG of a chart; its axes hold all points, and y = 0 if the values come close to it.
 std::string line_chart(const Chart& chart);
 
-/// Height of every joint over time, one line per gripper [mm], [s].
+/// Height of every joint over time, one line per gripper [mm], [s], in the colour that the gripper has in
+/// `schedule_picture`.
 Chart height_chart(const Schedule& schedule, const RigOptions& rig, const std::string& title);
 
 /// SVG of a draping sequence for a process engineer: one row per gripper with a bar for each stroke, from the

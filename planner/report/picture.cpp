@@ -279,30 +279,31 @@ void draw_panel(Svg& svg, const DrapePanel& panel, const Vector2d& corner, const
 void draw_legend(Svg& svg, Vector2d at, double right, const std::vector<DrapePanel>& panels) {
   const double left = at.x();
   const auto any = [&](auto has) { return std::any_of(panels.begin(), panels.end(), has); };
-  const auto entry = [&](const std::string& text, double width, const auto& draw_symbol) {
+  const auto entry = [&](const std::string& text, const auto& draw_symbol) {
+    constexpr double kSymbol = 30, kApart = 14, kLetters = 12;
+    const double width = kSymbol + text_width(text, kLetters);
     if (at.x() + width > right) at = {left, at.y() + kLegendRow};
     draw_symbol();
-    svg.text(at + Vector2d(30, 4), text, {.size = 12, .colour = ink::kSoft});
-    at.x() += width;
+    svg.text(at + Vector2d(kSymbol, 4), text, {.size = kLetters, .colour = ink::kSoft});
+    at.x() += width + kApart;
   };
   if (any([](const DrapePanel& p) { return p.boundary.size() > 1; }))
-    entry("prescribed boundary", 164, [&] { draw_boundary(svg, {at, at + Vector2d(24, 0)}); });
-  entry("ply edge", 98, [&] { svg.line(at, at + Vector2d(24, 0), {.stroke = ink::kText, .width = 1.2}); });
+    entry("prescribed boundary", [&] { draw_boundary(svg, {at, at + Vector2d(24, 0)}); });
+  entry("ply edge", [&] { svg.line(at, at + Vector2d(24, 0), {.stroke = ink::kText, .width = 1.2}); });
   if (any([](const DrapePanel& p) { return p.folds.empty(); }))
-    entry("largest gap", 116, [&] { draw_cross(svg, at + Vector2d(16, 0)); });
+    entry("largest gap", [&] { draw_cross(svg, at + Vector2d(16, 0)); });
   if (any([](const DrapePanel& p) { return !p.folds.empty(); }))
-    entry("folds", 84, [&] { draw_folds(svg, {at + Vector2d(14, 0)}); });
+    entry("folds", [&] { draw_folds(svg, {at + Vector2d(14, 0)}); });
   if (any([](const DrapePanel& p) { return p.largest_offset.has_value(); })) {
-    entry("largest boundary offset", 178,
-          [&] { draw_measure(svg, at + Vector2d(4, 0), at + Vector2d(22, 0)); });
+    entry("largest boundary offset", [&] { draw_measure(svg, at + Vector2d(4, 0), at + Vector2d(22, 0)); });
   }
   if (any([](const DrapePanel& p) { return !p.pads.empty(); })) {
-    entry("gripper pad", 100, [&] {
+    entry("gripper pad", [&] {
       svg.circle(at + Vector2d(14, 0), 8, {.stroke = ink::kText, .width = 0.8, .opacity = 0.55});
     });
   }
   if (any([](const DrapePanel& p) { return !p.weights.empty(); })) {
-    entry("stroke that matters", 150,
+    entry("stroke that matters",
           [&] { svg.circle(at + Vector2d(14, 0), 8, {.fill = kEmphasis, .opacity = 0.8}); });
   }
 }

@@ -14,8 +14,9 @@
 #include "planner/drape/acceptance.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/drape/run_checks.hpp"
+#include "planner/page/page.hpp"
 #include "planner/report/charts.hpp"
-#include "planner/report/page.hpp"
+#include "planner/report/page_parts.hpp"
 #include "planner/report/vtu.hpp"
 #include "planner/schedule/file.hpp"
 #include "planner/score/scoring.hpp"
@@ -93,16 +94,9 @@ Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows, c
 std::vector<std::string> notes_of(const DrapeProblem& problem, const Drape& best,
                                   const std::string& fidelity) {
   std::vector<std::string> notes = map_warnings(problem.definition(), problem.mapping());
-  const MaterialNotes& material = problem.definition().material_notes;
-  const std::vector<std::string> beyond = drape_warnings(problem, best, fidelity);
-  notes.insert(notes.end(), beyond.begin(), beyond.end());
-  for (const std::string* source :
-       {&material.source, &material.tension.source, &material.compression.source, &material.shear.source}) {
-    if (!source->empty()) notes.push_back(*source);
-  }
-  if (const std::string& mold = problem.definition().mold_source; !mold.empty())
-    notes.push_back("Mold: " + mold);
-  if (const std::string& rig = problem.definition().grippers_source; !rig.empty()) notes.push_back("Grippers: " + rig);
+  for (const std::vector<std::string>& more :
+       {drape_warnings(problem, best, fidelity), source_notes(problem.definition())})
+    notes.insert(notes.end(), more.begin(), more.end());
   return notes;
 }
 
@@ -252,27 +246,6 @@ void add_finer_rows(const Confirmation& confirmation, PlanReport& report) {
   report.verdict += fmt::format(" {}.", capitalised(confirmation_text(confirmation)));
 }
 
-ReportTable folds_report(const Diagnosis& diagnosis, const RigOptions& rig) {
-  ReportTable table{
-      .title = {},
-      .caption =
-          "The highest places, half a spacing of the rig apart at least. Slack is by how much the ply is "
-          "longer than the mold below the fold, along the fibre; below zero it is a chord over a hollow.",
-      .head = {"fold", "kind", "height [mm]", "at u, v [mm]", "along", "slack [mm]", "grippers",
-               "stands since [s]"},
-      .rows = {}};
-  for (const Fold& fold : diagnosis.folds) {
-    std::vector<std::string> names;
-    for (const int g : fold.grippers) names.push_back(rig.name(g));
-    table.rows.push_back({.cells = {fmt::to_string(table.rows.size() + 1), words_of(fold.kind).name,
-                                    fixed(1e3 * fold.height, 2),
-                                    fmt::format("{:.0f}, {:.0f}", 1e3 * fold.at.x(), 1e3 * fold.at.y()),
-                                    fold.fibre == Fibre::warp ? "warp" : "weft", fixed(1e3 * fold.slack, 2),
-                                    fmt::format("{}", fmt::join(names, ", ")), fixed(fold.since, 1)}});
-  }
-  return table;
-}
-
 }  // namespace
 
 ReportReasons reasons_report(const DrapeProblem& problem, const Drape& drape, const std::string& fidelity,
@@ -294,10 +267,18 @@ ReportReasons reasons_report(const DrapeProblem& problem, const Drape& drape, co
       .remedy = remedy_text(diagnosis, rig),
       .figure = {"Folds by height; the stronger a pad is filled, the more its height or its start matters",
                  drape_picture({panel}, problem.definition().mold->extent())},
-      .folds = folds_report(diagnosis, rig)};
+      .folds = folds_table(diagnosis, rig)};
 }
 
 namespace {
+
+/// The baselines and the winner, for the view in space.
+std::vector<ViewDrape> viewed(const DrapeProblem& problem, const PlanResult& result) {
+  const Scene& report = problem.model(kReport).scene();
+  return {{"uniform", &report, &result.uniform.frames},
+          {"wave", &report, &result.wave.frames},
+          {"optimised", &problem.model(result.search.best_fidelity).scene(), &result.best.frames}};
+}
 
 /// The page of a plan. @param drape, sequence  pictures, as SVG.
 PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,
@@ -313,6 +294,10 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   if (!diagnosis.good())
     report.reasons = reasons_report(problem, result.best, search.best_fidelity, diagnosis);
   report.rows = rows_of(problem, result);
+  report.ply_area = ply_area(problem.model(kReport).scene().mesh);
+  const std::vector<ViewDrape> drapes = viewed(problem, result);
+  report.view = space_view(drapes, &problem.mapping());
+  report.tables.push_back(angles_table(drapes, &problem.mapping()));
   if (trust.confirmation) add_finer_rows(*trust.confirmation, report);
   report.notes = notes_of(problem, result.best, search.best_fidelity);
   if (trust.spread) report.tables.push_back(spread_report(*trust.spread));
@@ -322,7 +307,7 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   }
   report.figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", drape},
                     {"Who goes down when", sequence},
-                    {"Heights of the joints over time",
+                    {"Heights of the joints over time, in the colours of their arrival",
                      line_chart(height_chart(search.best.schedule, rig, "Optimised sequence"))},
                     {"Best objective against evaluations", line_chart(history_chart(search))}};
   if (const FloorFront& front = problem.ply_floor().front; !front.points.empty()) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "planner/diagnosis/diagnosis.hpp"
-#include "planner/report/page.hpp"
+#include "planner/page/page.hpp"
 #include "planner/report/picture.hpp"
 #include "planner/search/plan.hpp"
 #include "planner/trust/claim.hpp"

@@ -82,6 +82,15 @@ int decimals_of(double step) {
   return kMost;
 }
 
+double text_width(const std::string& text, double size) {
+  constexpr double kLetter = 0.59;  // mean width of a letter of DejaVu Sans, over its size
+  const auto letters = std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xc0u) !=
+           0x80u;  // bytes that do not go on with a character of UTF-8
+  });
+  return kLetter * size * double(letters);
+}
+
 Svg::Svg(double width, double height, const std::string& title) {
   body_ = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "

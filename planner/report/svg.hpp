@@ -28,6 +28,10 @@ double nice_step(double range, int most);
 /// Digits after the point that a multiple of `step` needs, at most 6.
 int decimals_of(double step);
 
+/// Width of a text in a wide font, so that what stands beside it is not covered [px]. @param size  of the
+/// letters [px].
+double text_width(const std::string& text, double size);
+
 /// An SVG document that is written from top to bottom. It uses no ids, so several may stand in one HTML page.
 class Svg {
  public:
@@ -59,7 +63,9 @@ class Svg {
   /// `text` is escaped here.
   void text(const Eigen::Vector2d& place, const std::string& text, const TextStyle& style);
 
-  /// What follows until `close_window` counts from `corner` and is cut off outside the window.
+  /// What follows until `close_window` counts from `corner` and is cut off outside the window. A dark page
+  /// turns the ink outside of windows light (page.css); what has its own colours belongs in one, on
+  /// `ink::kSurface`.
   void open_window(const Eigen::Vector2d& corner, const Eigen::Vector2d& size);
   void close_window();
 

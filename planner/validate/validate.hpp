@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "planner/report/page.hpp"
+#include "planner/page/page.hpp"
 
 namespace drapeplan {
 

@@ -7,6 +7,7 @@
 #include "planner/base/text.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/report/charts.hpp"
+#include "planner/report/page_parts.hpp"
 #include "planner/views/profile.hpp"
 #include "planner/views/shear_view.hpp"
 
@@ -180,6 +181,13 @@ class Page {
                                 drape.verdict.empty() ? "" : " ", run.final.time, summary.message);
     page_.reasons = std::move(drape.reasons);
     page_.rows = std::move(drape.rows);
+    page_.ply_area = ply_area(model.scene().mesh);
+    if (drape.frames != nullptr) {
+      const std::vector<ViewDrape> viewed{{"this run", &model.scene(), drape.frames}};
+      page_.view = space_view(viewed, drape.mapping);
+      page_.tables.push_back(angles_table(viewed, drape.mapping));
+    }
+    page_.notes = source_notes(definition);
     page_.figures = std::move(drape.figures);
     page_.facts = {
         {"shown", time.empty() ? "" : fmt::format("{:.6g} s to {:.6g} s", time.front(), time.back())},

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "fem/run/simulate.hpp"
-#include "planner/report/page.hpp"
+#include "planner/drape/map_result.hpp"
+#include "planner/page/page.hpp"
 #include "planner/views/history.hpp"
 
 namespace drapeplan {
@@ -28,6 +29,8 @@ struct DrapePage {
   std::optional<ReportReasons> reasons;                    ///< why not
   std::vector<ReportRow> rows;                             ///< scores and references
   std::vector<ReportFigure> figures;                       ///< shown first
+  const std::vector<Snapshot>* frames = nullptr;  ///< of the run, for the view in space; null: without it
+  const MapResult* mapping = nullptr;             ///< of the ply; null without one
   std::vector<std::pair<std::string, std::string>> files;  ///< name, what it holds
 };
 

@@ -150,6 +150,7 @@ std::string shear_picture(const std::vector<ShearPanel>& panels, const Mesh& mes
     const Vector2d corner(kMargin + double(k) * (size.x() + kPanelGap), kTop);
     svg.text(corner - Vector2d(0, 24), panels[k].title, {.size = 16, .bold = true});
     svg.open_window(corner - Vector2d(2, 2), size + Vector2d(4, 4));
+    svg.rectangle({0, 0}, size + Vector2d(4, 4), {.fill = ink::kSurface});
     for (const auto& line : lines) {
       std::vector<Vector2d> places;
       for (const Vector3d& point : line) places.push_back(view.pixel(point));

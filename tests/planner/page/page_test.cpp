@@ -1,4 +1,4 @@
-#include "planner/report/page.hpp"
+#include "planner/page/page.hpp"
 
 #include <gtest/gtest.h>
 
@@ -90,6 +90,15 @@ TEST(HtmlReport, AScoreThatTheObjectiveDoesNotTakeStandsBesideAndIsNotCompared) 
   EXPECT_TRUE(contains(page, "<tr class=\"beside\"><td>optimised, before pressing</td><td>1.00</td>"));
   EXPECT_TRUE(contains(page, "<td class=\"best\">3.40</td>"));
   EXPECT_TRUE(contains(page, "Grey rows"));
+}
+
+TEST(HtmlReport, WrinkledAreaIsAlsoAShareOfThePly) {
+  PlanReport report;
+  report.rows = {row("uniform", 0.0122)};
+  report.rows.front().score.wrinkled_area = 0.01;
+  EXPECT_FALSE(contains(html_report(report), "\u2009%"));
+  report.ply_area = 0.04;
+  EXPECT_TRUE(contains(html_report(report), "<td>100.0<small>25.0\u2009%</small></td>"));
 }
 
 TEST(HtmlReport, OneRowHasNothingToStandOutFrom) {

@@ -1,4 +1,4 @@
-#include "planner/report/page.hpp"
+#include "planner/page/page.hpp"
 
 #include <fmt/format.h>
 
@@ -9,36 +9,10 @@
 #include <sstream>
 
 #include "planner/base/text.hpp"
+#include "planner/page/assets.hpp"
 
 namespace drapeplan {
 namespace {
-
-constexpr const char* kStyle = R"css(
-:root { color: #1d2733; background: #fff; font: 16px/1.55 Inter, "Helvetica Neue", Arial, "Liberation Sans", sans-serif; }
-body { max-width: 76rem; margin: 0 auto; padding: 2.5rem 1.5rem 4rem; }
-h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .4rem; }
-h2 { font-size: 1.15rem; margin: 2.6rem 0 .7rem; padding-top: 1.1rem; border-top: 1px solid #dfe4ea; }
-p { max-width: 46rem; margin: .5rem 0; }
-.lead { font-size: 1.1rem; }
-.soft, figcaption, caption { color: #5b6775; font-size: .9rem; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-caption { caption-side: bottom; text-align: left; padding-top: .5rem; max-width: 60rem; }
-th, td { padding: .38rem .7rem; text-align: right; border-bottom: 1px solid #dfe4ea; white-space: nowrap; }
-th { font-weight: 600; font-size: .86rem; line-height: 1.3; vertical-align: bottom; white-space: normal; max-width: 6.2rem; }
-th small { display: block; font-weight: 400; color: #5b6775; }
-th:first-child, td:first-child, .pairs td { text-align: left; }
-.pairs td { white-space: normal; padding: .25rem 1.4rem .25rem 0; vertical-align: top; }
-.best { font-weight: 700; background: #eaf4ee; }
-.reference td { color: #5b6775; font-style: italic; }
-.beside td { color: #5b6775; }
-.texts td, .texts th { text-align: left; white-space: normal; max-width: 24rem; }
-.failed { color: #b3261e; text-align: left; white-space: normal; }
-figure { margin: 1.2rem 0 1.8rem; }
-figure svg { max-width: 100%; height: auto; }
-code { font: .92em ui-monospace, "DejaVu Sans Mono", monospace; }
-@media print { body { padding: 0; } h2, figure, tr { break-inside: avoid; } }
-)css";
 
 using BestTexts = std::array<std::optional<std::string>, kScoreParts.size()>;
 
@@ -61,7 +35,15 @@ std::optional<std::string> best_text(const std::vector<ReportRow>& rows, const S
   return text;
 }
 
-std::string score_row(const ReportRow& row, const BestTexts& best) {
+/// Of the wrinkled area its share of the ply, on a line of its own; empty for other parts and where it is not
+/// known.
+std::string share_text(const ScorePart& part, const Score& score, double ply_area) {
+  const double share = score.*part.value / ply_area;
+  if (part.value != &Score::wrinkled_area || !(ply_area > 0) || !std::isfinite(share)) return "";
+  return fmt::format("<small>{}\u2009%</small>", fixed(1e2 * share, 1));
+}
+
+std::string score_row(const ReportRow& row, const BestTexts& best, double ply_area) {
   std::string text = row.reference ? "<tr class=\"reference\">"
                      : row.beside  ? "<tr class=\"beside\">"
                                    : "<tr>";
@@ -73,12 +55,13 @@ std::string score_row(const ReportRow& row, const BestTexts& best) {
   for (size_t k = 0; k < kScoreParts.size(); ++k) {
     const std::string value = value_text(kScoreParts[k], row.score);
     const bool stands_out = counts(row, kScoreParts[k]) && best[k] == value;
-    text += fmt::format("<td{}>{}</td>", stands_out ? " class=\"best\"" : "", value);
+    text += fmt::format("<td{}>{}{}</td>", stands_out ? " class=\"best\"" : "", value,
+                        share_text(kScoreParts[k], row.score, ply_area));
   }
   return text + "</tr>\n";
 }
 
-std::string score_table(const std::vector<ReportRow>& rows) {
+std::string score_table(const std::vector<ReportRow>& rows, double ply_area) {
   if (rows.empty()) return "";
   BestTexts best;
   std::string text = "<h2>Scores</h2>\n<div class=\"wide\"><table>\n<thead><tr><th>sequence</th>";
@@ -87,18 +70,19 @@ std::string score_table(const std::vector<ReportRow>& rows) {
     text += fmt::format("<th>{}<small>{}</small></th>", kScoreParts[k].label, kScoreParts[k].unit);
   }
   text += "</tr></thead>\n<tbody>\n";
-  for (const ReportRow& row : rows) text += score_row(row, best);
+  for (const ReportRow& row : rows) text += score_row(row, best, ply_area);
   return text +
-         "</tbody>\n<caption>Lower is better; the best value of a column stands out. Gap: between the "
+         "</tbody>\n<caption><span>Lower is better; the best value of a column stands out. Gap: between the "
          "ply\u2019s underside and the mold at the end. Wrinkled area: gap above the threshold where the ply "
-         "does not bridge a hollow. Boundary offset: between the ply\u2019s edge and the prescribed "
+         "does not bridge a hollow, below it its share of the ply. Boundary offset: between the ply\u2019s "
+         "edge and the prescribed "
          "boundary. "
          "Rows in italics are reported elsewhere and are not compared." +
          (std::any_of(rows.begin(), rows.end(), [](const ReportRow& row) { return row.beside; })
               ? " Grey rows are scores that the objective does not take, or drapes at a finer setting: they "
                 "are not compared."
               : "") +
-         "</caption>\n</table></div>\n";
+         "</span></caption>\n</table></div>\n";
 }
 
 /// @param title  as markup.
@@ -115,7 +99,8 @@ std::string text_table(const ReportTable& table, const std::string& title) {
       text += fmt::format("<tr{}><td colspan=\"{}\">{}</td></tr>\n", style, table.head.size(),
                           escape_markup(row.note));
   }
-  return text + fmt::format("</tbody>\n<caption>{}</caption>\n</table></div>\n", escape_markup(table.caption));
+  return text + fmt::format("</tbody>\n<caption><span>{}</span></caption>\n</table></div>\n",
+                            escape_markup(table.caption));
 }
 
 std::string paragraph(const std::string& text, const std::string& style = "") {
@@ -184,11 +169,11 @@ std::string html_report(const PlanReport& report) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<title>{0} \u2013 draping plan</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
-      escape_markup(report.title), kStyle);
-  page += paragraph(report.description, "soft") + paragraph(report.verdict, "lead");
+      escape_markup(report.title), kPageStyle);
+  page += paragraph(report.description, "soft") + paragraph(report.verdict, "lead") + report.view;
   if (report.reasons) page += reasons_text(*report.reasons);
   if (!report.reach.empty()) page += heading("What the rig can reach") + paragraph(report.reach);
-  page += score_table(report.rows);
+  page += score_table(report.rows, report.ply_area);
   for (const ReportTable& table : report.tables) page += text_table(table, heading(table.title));
   if (!report.figures.empty()) page += "<h2>Pictures</h2>\n";
   for (const ReportFigure& figure : report.figures) page += figure_text(figure);

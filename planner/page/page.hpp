@@ -1,4 +1,4 @@
-// The report of a plan run as one self-contained HTML page, and its scores as a table for the console.
+// The report of a run as one self-contained HTML page, and its scores as a table for the console.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ struct ReportRow {
   bool beside = false;     ///< the score that the objective does not take: shown, not compared
 };
 
-/// A picture with its caption. `svg` comes from picture.hpp or charts.hpp and is embedded as it is.
+/// A picture with its caption. `svg` is embedded as it is.
 struct ReportFigure {
   std::string caption;
   std::string svg;
@@ -46,12 +46,14 @@ struct ReportReasons {
 
 /// All texts are plain text; they are escaped when written. What is empty is left out.
 struct PlanReport {
-  std::string title;            ///< name of the case
-  std::string description;      ///< what is draped, one or two sentences
-  std::string verdict;          ///< good enough or not, and what came out
+  std::string title;                     ///< name of the case
+  std::string description;               ///< what is draped, one or two sentences
+  std::string verdict;                   ///< good enough or not, and what came out
   std::optional<ReportReasons> reasons;  ///< beside a drape that is not accepted
-  std::string reach;            ///< what the rig can reach at all, one or two sentences
-  std::vector<ReportRow> rows;  ///< baselines first, the optimum last
+  std::string view;                      ///< of the drape in space, from `view_markup`; embedded as it is
+  std::string reach;                     ///< what the rig can reach at all, one or two sentences
+  std::vector<ReportRow> rows;           ///< baselines first, the optimum last
+  double ply_area = 0;                   ///< in the flat ply [m^2]; 0: not known
   std::vector<ReportTable> tables;
   std::vector<ReportFigure> figures;
   std::vector<std::string> notes;                          ///< assumptions and limits the reader must know
@@ -61,8 +63,8 @@ struct PlanReport {
       files;  ///< name, what it holds; linked relative to the report
 };
 
-/// The page: no scripts, nothing loaded from elsewhere. In each column of scores the best valid row that is
-/// not a reference stands out.
+/// The page: no scripts but those of its view, nothing loaded from elsewhere. In each column of scores the
+/// best valid row that is not a reference stands out.
 std::string html_report(const PlanReport& report);
 
 /// The parts of the scores that are compared, as a table for the console.
