@@ -35,16 +35,27 @@ PathPoint<Value> path_point(const std::vector<AnyKnot>& path, double t) {
   return {place(path.back()), integral + place(path.back()) * (t - path.back().time)};
 }
 
+/// Place on the piecewise linear path at t, of paths with thousands of knots, too; at rest outside.
+template <class Value, class AnyKnot>
+Value place_at(const std::vector<AnyKnot>& path, double t) {
+  const auto next = std::upper_bound(path.begin(), path.end(), t,
+                                     [](double time, const AnyKnot& knot) { return time < knot.time; });
+  if (next == path.begin()) return place(path.front());
+  if (next == path.end()) return place(path.back());
+  const AnyKnot& a = *(next - 1);
+  return place(a) + (place(*next) - place(a)) * (t - a.time) / (next->time - a.time);
+}
+
 /// Moving average over the last `blend_time`, and its rate.
 template <class Value, class AnyKnot>
 void blend(const std::vector<AnyKnot>& path, double t, double blend_time, Value& at, Value& rate) {
-  const PathPoint<Value> now = path_point<Value>(path, t);
   if (blend_time <= 0) {
     constexpr double kProbe = 1e-6;  // [s], for the slope of a path without blending
-    at = now.place;
-    rate = (path_point<Value>(path, t + kProbe).place - at) / kProbe;
+    at = place_at<Value>(path, t);
+    rate = (place_at<Value>(path, t + kProbe) - at) / kProbe;
     return;
   }
+  const PathPoint<Value> now = path_point<Value>(path, t);
   const PathPoint<Value> before = path_point<Value>(path, t - blend_time);
   at = (now.integral - before.integral) / blend_time;
   rate = (now.place - before.place) / blend_time;

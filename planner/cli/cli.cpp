@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "planner/base/json_text.hpp"
 #include "planner/base/parallel.hpp"
+#include "planner/base/quantity.hpp"
 #include "planner/base/text.hpp"
 #include "planner/cli/process.hpp"
+#include "planner/schedule/robot_files.hpp"
 
 namespace drapeplan {
 namespace {
@@ -95,6 +98,28 @@ Case load_case(const std::string& file, const CommonOptions& options, const std:
   Case definition = load_case(file, options, needs, errors);
   if (!errors.empty()) throw InputErrors(errors);
   return definition;
+}
+
+void add_cycle(CLI::App& verb, std::string& cycle) {
+  verb.add_option(
+          "--cycle", cycle,
+          fmt::format("cycle of the robot's controller, as \"4 ms\", for schedule.csv and the other files "
+                      "for a robot (default: {})",
+                      format_quantity(kDefaultCycle, Dimension::time)))
+      ->type_name("TIME");
+}
+
+double cycle_of(const std::string& text) {
+  if (text.empty()) return kDefaultCycle;
+  std::string fault;
+  const std::optional<double> time = parse_quantity(text, Dimension::time, fault);
+  if (!time) throw WrongInput("--cycle: " + fault);
+  const double steps = *time / kCycleStep;
+  if (*time >= kShortestCycle && *time <= kLongestCycle && std::abs(steps - std::round(steps)) <= 1e-6)
+    return *time;
+  throw WrongInput(fmt::format("--cycle: \"{}\": out of range; allowed: whole microseconds from {} to {}",
+                               text, format_quantity(kShortestCycle, Dimension::time),
+                               format_quantity(kLongestCycle, Dimension::time)));
 }
 
 OutputFolder take_folder(const CommonOptions& options, const std::string& verb) {

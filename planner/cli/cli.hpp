@@ -106,6 +106,13 @@ Case load_case(const std::string& file, const CommonOptions& options,
 Case load_case(const std::string& file, const CommonOptions& options, const std::vector<std::string>& needs,
                std::vector<InputError>& errors);
 
+/// Adds --cycle, which `cycle_of` reads.
+void add_cycle(CLI::App& verb, std::string& cycle);
+
+/// The cycle of the robot's controller [s]; that of robot_files.hpp if the text is empty.
+/// @throws WrongInput  unless it is a time within the limits there.
+double cycle_of(const std::string& text);
+
 /// Takes the folder of --out for this verb, before the work begins; no folder if none is named.
 /// @throws WrongInput with the place and the reason.
 OutputFolder take_folder(const CommonOptions& options, const std::string& verb);

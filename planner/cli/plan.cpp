@@ -29,6 +29,7 @@ struct PlanVerbOptions {
   std::vector<std::string> files;
   bool resume = false;
   std::string budget;  ///< a time or a number of evaluations; empty: the case's
+  std::string cycle;   ///< of the robot's controller
 };
 
 /// A line on stderr every few seconds: where the search is, how good, how long still.
@@ -160,7 +161,8 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
   const Diagnosis diagnosis =
       diagnosis_of(planned, result.best, result.search.best_fidelity, std::move(effects));
   if (result.best.score.valid)
-    write_plan(out.path(), planned, result, trust, diagnosis);  // no schedule for a robot from failed runs
+    // No schedule for a robot from failed runs.
+    write_plan(out.path(), planned, result, trust, diagnosis, cycle_of(options.cycle));
   json document = plan_json(planned, result, trust, diagnosis);
   document["interrupted"] = interrupted;
   write_text(out.path() / "result.json", document_text(document));
@@ -248,6 +250,7 @@ int plan_all(const PlanVerbOptions& options) {
     cases.push_back(load_case(file, options.common, {"grippers", "material"}, errors));
   if (!errors.empty()) throw InputErrors(errors);
   for (Case& definition : cases) set_budget(options.budget, definition.optimise);
+  cycle_of(options.cycle);  // refused before the work
   std::vector<OutputFolder> out;
   for (const std::filesystem::path& folder : folders)
     out.emplace_back(folder, "plan", options.resume ? kEvaluations : "");
@@ -274,6 +277,7 @@ void add_plan(CLI::App& program, Action& action) {
         verb.add_option("--budget", options.budget,
                         "time that each plan may take, as \"10 min\", or its number of evaluations "
                         "(default: the case's optimise.budget)");
+        add_cycle(verb, options.cycle);
         verb.add_flag("--resume", options.resume, "continue from the evaluations in the run directory");
       },
       plan_all);

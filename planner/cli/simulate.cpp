@@ -18,6 +18,10 @@
 #include "planner/report/vtu.hpp"
 #include "planner/schedule/check.hpp"
 #include "planner/schedule/file.hpp"
+#include "planner/schedule/motion.hpp"
+#include "planner/schedule/motion_file.hpp"
+#include "planner/schedule/robot_files.hpp"
+#include "planner/search/plan.hpp"
 #include "planner/trust/setting_runs.hpp"
 #include "planner/views/files.hpp"
 #include "planner/views/history.hpp"
@@ -35,6 +39,7 @@ struct SimulateOptions {
   int frames = 21;
   std::string restart, save;  ///< files of states
   std::string pause;          ///< a time, e.g. "2 s"
+  std::string cycle;          ///< of the robot's controller
 };
 
 /// The part of the run that was asked for; the state is kept here while it is used.
@@ -172,14 +177,19 @@ int simulate_free(const Case& definition, const SimulateOptions& options) {
   return run.summary.status != RunStatus::diverged ? kDone : kNotFinished;
 }
 
+/// A table has the motion itself. @param schedule  name of a schedule or a file.
+PathKind kind_of(const std::string& schedule) {
+  return is_motion_file(schedule) ? PathKind::sampled : PathKind::blended;
+}
+
 /// The schedule by name or from a file. @throws WrongInput with all that is wrong with the file.
 Schedule schedule_of(const DrapeProblem& problem, const std::string& name) {
   if (name == "uniform") return to_schedule(problem.frame(), uniform_strokes(problem.frame()));
   if (name == "wave") return to_schedule(problem.frame(), wave_strokes(problem.frame()));
   std::error_code error;
   if (std::filesystem::is_directory(name, error)) {
-    throw WrongInput(
-        fmt::format("{}: is a folder; a schedule is uniform, wave or a file like schedule.json", name));
+    throw WrongInput(fmt::format(
+        "{}: is a folder; a schedule is uniform, wave or a file like schedule.json or schedule.csv", name));
   }
   if (!std::filesystem::exists(name, error)) {
     const std::string nearest = nearest_word(name, {"uniform", "wave"});
@@ -187,10 +197,11 @@ Schedule schedule_of(const DrapeProblem& problem, const std::string& name) {
                                  nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
   }
   const RigOptions& rig = *problem.definition().grippers;
-  ScheduleReading reading = read_schedule(name, rig);
+  ScheduleReading reading = is_motion_file(name) ? read_motion(name, rig) : read_schedule(name, rig);
   if (!reading.errors.empty()) throw InputErrors(reading.errors);
+  if (is_motion_file(name)) level_start(problem.frame().start_xy, reading.value);
   std::string refusals;
-  for (const std::string& refusal : rig_refusals(reading.value, rig))
+  for (const std::string& refusal : rig_refusals(reading.value, rig, kind_of(name)))
     refusals += fmt::format("{}{}: {}", refusals.empty() ? "" : "\n", name, refusal);
   if (!refusals.empty()) throw WrongInput(refusals);
   let_go_pressed(problem.definition().press, reading.value);
@@ -220,15 +231,21 @@ void write_drape(const std::filesystem::path& folder, const DrapeProblem& proble
                                             definition.mold->extent());
   write_text(folder / "drape.svg", picture);
   write_schedule(folder / "schedule.json", schedule, *definition.grippers);
-  write_schedule_csv(folder / "schedule.csv", schedule, *definition.grippers);
+  const std::vector<std::string> refusals = write_robot_files(folder, schedule, *definition.grippers,
+                                                              {.cycle = cycle_of(options.cycle),
+                                                               .case_name = definition.name,
+                                                               .case_hash = hex(case_hash(definition)),
+                                                               .kind = kind_of(options.schedule)});
+  if (!refusals.empty())
+    print_warnings({"no trajectory for ROS 2 is written, the rig cannot follow: " + refusals.front()},
+                   options.common);
   DrapePage page{
       .verdict = verdict,
       .reasons = {},
       .rows = reference_rows(definition),
       .figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", picture}},
-      .files = {{"schedule.json", "the sequence, knots"},
-                {"schedule.csv", "the same, sampled for a robot controller"},
-                {"mold.vtu", "the mold, for ParaView"}}};
+      .files = {{"schedule.json", "the sequence, knots"}, {"mold.vtu", "the mold, for ParaView"}}};
+  page.files.insert(page.files.begin() + 1, robot_files().begin(), robot_files().end());
   const std::vector<ReportRow> own = drape_rows(options.schedule, drape);
   page.rows.insert(page.rows.end(), own.begin(), own.end());
   if (!diagnosis.good()) page.reasons = reasons_report(problem, drape, options.fidelity, diagnosis);
@@ -293,6 +310,7 @@ void check_options(const Case& definition, const SimulateOptions& options) {
                         fmt::format("there is no fidelity \"{}\"; there are {}", options.fidelity,
                                     fmt::join(names, " "))}});
   }
+  cycle_of(options.cycle);  // refused before the run
   if (!definition.grippers && !(definition.duration > 0)) {
     throw InputErrors(
         {{options.file, 0, "/duration", "a case without grippers needs a duration, e.g. \"2 s\""}});
@@ -314,7 +332,9 @@ void add_simulate(CLI::App& program, Action& action) {
       [](CLI::App& verb, SimulateOptions& options) {
         verb.add_option("CASE", options.file, "case file")->required();
         verb.add_option("--schedule", options.schedule,
-                        "uniform, wave or a schedule file (default: uniform)");
+                        "uniform, wave, a schedule file, or a motion as schedule.csv or schedule_wide.csv "
+                        "have it (default: uniform)");
+        add_cycle(verb, options.cycle);
         verb.add_option("--fidelity", options.fidelity, "fidelity of the case (default: report)");
         verb.add_option("--frames", options.frames, "instants written for ParaView (default: 21)")
             ->check(CLI::Range(1, 10000));

@@ -325,12 +325,12 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
                   {"energy balance error", fmt::format("{:.1e} of the largest energy",
                                                        result.best.run.summary.energy.balance_error)}};
   report.files = {{"schedule.json", "the optimised sequence, knots"},
-                  {"schedule.csv", "the same, sampled for a robot controller"},
                   {"result.json", "all results"},
                   {"resolved.json", "the complete case with all defaults"},
                   {"evaluations.jsonl", "every evaluation"},
                   {"optimised.pvd", "the optimised drape over time, for ParaView"},
                   {"mold.vtu", "the mold, for ParaView"}};
+  report.files.insert(report.files.begin() + 1, robot_files().begin(), robot_files().end());
   if (result.design) {
     report.files.emplace_back(kDesignFile, "the case with what was changed of the rig; it runs on its own");
     if (!search.interrupted) report.notes.push_back(design_note(result));
@@ -341,11 +341,14 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
 }  // namespace
 
 void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result,
-                const PlanTrust& trust, const Diagnosis& diagnosis) {
+                const PlanTrust& trust, const Diagnosis& diagnosis, double cycle) {
   const RigOptions& rig = *problem.definition().grippers;
   const StagedResult& search = result.search;
   write_schedule(folder / "schedule.json", search.best.schedule, rig);
-  write_schedule_csv(folder / "schedule.csv", search.best.schedule, rig);
+  write_robot_files(folder, search.best.schedule, rig,
+                    {.cycle = cycle,
+                     .case_name = problem.definition().name,
+                     .case_hash = hex(case_hash(problem.definition()))});
   write_schedule(folder / "schedule_uniform.json", search.uniform.schedule, rig);
   write_schedule(folder / "schedule_wave.json", search.wave.schedule, rig);
 

@@ -9,6 +9,7 @@
 #include "planner/diagnosis/diagnosis.hpp"
 #include "planner/page/page.hpp"
 #include "planner/report/picture.hpp"
+#include "planner/schedule/robot_files.hpp"
 #include "planner/search/plan.hpp"
 #include "planner/trust/claim.hpp"
 
@@ -35,10 +36,11 @@ ReportReasons reasons_report(const DrapeProblem& problem, const Drape& drape, co
 /// The case with its design, in a run directory; it runs on its own.
 inline constexpr const char* kDesignFile = "design.json";
 
-/// Writes all files of a plan but result.json and resolved.json: schedule.json and .csv of the best,
-/// schedules of the baselines, contour picture, charts, VTU and PVD, report.html.
+/// Writes all files of a plan but result.json and resolved.json: schedule.json and the files for a robot of
+/// the best, schedules of the baselines, contour picture, charts, VTU and PVD, report.html.
+/// @param cycle  of the robot's controller [s].
 void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result,
-                const PlanTrust& trust = {}, const Diagnosis& diagnosis = {});
+                const PlanTrust& trust = {}, const Diagnosis& diagnosis = {}, double cycle = kDefaultCycle);
 
 /// result.json of a plan (plan_results.cpp).
 nlohmann::json plan_json(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,

@@ -13,6 +13,9 @@ namespace drapeplan {
 namespace {
 
 constexpr double kRounding = 1e-3;  // of a limit: times and heights of a schedule are rounded
+constexpr double kScatter = 0.02;   // of a limit: a logged motion scatters
+/// Shortest time over which velocities of a sampled motion are taken: encoders do not resolve less [s].
+constexpr double kShortestWindow = 0.02;
 
 Eigen::Vector3d place(const Knot& knot) {
   return {0, 0, knot.z};
@@ -50,23 +53,97 @@ double largest_change(const std::vector<AnyKnot>& path, double blend_time,
   return largest;
 }
 
+/// What one gripper's motion is judged by.
+struct Extremes {
+  double velocity = 0;      ///< [m/s]
+  double acceleration = 0;  ///< [m/s^2]
+  double along_axis = 0;    ///< the same, largest component
+};
+
+/// Of what a rig can do, what a motion exceeds. @param slack  share of a limit that is no excess.
+void add_excess(int gripper, const Extremes& extremes, double change_time, double slack,
+                const RigOptions& rig, std::vector<std::string>& refusals) {
+  if (rig.max_acceleration && extremes.acceleration > *rig.max_acceleration * (1 + slack))
+    refusals.push_back(
+        fmt::format("gripper {} accelerates by {:g} m/s^2, more than grippers.max_acceleration ({:g} m/s^2)",
+                    rig.name(gripper), extremes.acceleration, *rig.max_acceleration));
+  const double force = rig.pad_mass * extremes.along_axis;
+  if (force > rig.actuator_force_limit * (1 + slack))
+    refusals.push_back(fmt::format(
+        "gripper {} needs {:g} N to change its velocity within the blend time of {:g} s, more than "
+        "grippers.actuator_force_limit ({:g} N)",
+        rig.name(gripper), force, change_time, rig.actuator_force_limit));
+}
+
+void add_velocity(double fastest, double slack, const RigOptions& rig, std::vector<std::string>& refusals) {
+  if (fastest > rig.max_velocity * (1 + slack))
+    refusals.push_back(fmt::format("moves at up to {:g} m/s, more than grippers.max_velocity ({:g} m/s)",
+                                   fastest, rig.max_velocity));
+}
+
 template <class AnyKnot>
 void add_accelerations(const std::vector<std::vector<AnyKnot>>& paths, double blend_time,
                        const RigOptions& rig, std::vector<std::string>& refusals) {
   for (size_t g = 0; g < paths.size(); ++g) {
     const auto length = [](const Eigen::Vector3d& v) { return v.norm(); };
     const auto along_axes = [](const Eigen::Vector3d& v) { return v.lpNorm<Eigen::Infinity>(); };
-    const double acceleration = largest_change(paths[g], blend_time, length) / blend_time;
-    const double force = rig.pad_mass * largest_change(paths[g], blend_time, along_axes) / blend_time;
-    if (rig.max_acceleration && acceleration > *rig.max_acceleration * (1 + kRounding))
-      refusals.push_back(fmt::format(
-          "gripper {} accelerates by {:g} m/s^2, more than grippers.max_acceleration ({:g} m/s^2)",
-          rig.name(int(g)), acceleration, *rig.max_acceleration));
-    if (force > rig.actuator_force_limit * (1 + kRounding))
-      refusals.push_back(fmt::format(
-          "gripper {} needs {:g} N to change its velocity within the blend time of {:g} s, more than "
-          "grippers.actuator_force_limit ({:g} N)",
-          rig.name(int(g)), force, blend_time, rig.actuator_force_limit));
+    const Extremes extremes{.acceleration = largest_change(paths[g], blend_time, length) / blend_time,
+                            .along_axis = largest_change(paths[g], blend_time, along_axes) / blend_time};
+    add_excess(int(g), extremes, blend_time, kRounding, rig, refusals);
+  }
+}
+
+/// Central differences over `window` of a path without blends. They are piecewise linear in time, so they are
+/// largest where one of their places is a knot.
+/// @param at  place at a time.
+template <class AnyKnot>
+Extremes differences(const std::vector<AnyKnot>& path, double window,
+                     const std::function<Eigen::Vector3d(double)>& at) {
+  const double step = 0.5 * window;
+  Extremes largest;
+  for (const AnyKnot& knot : path) {
+    for (const double time : {knot.time - step, knot.time, knot.time + step}) {
+      const Eigen::Vector3d before = at(time - step), now = at(time), after = at(time + step);
+      const Eigen::Vector3d change = (after - 2 * now + before) / (step * step);
+      largest.velocity = std::max(largest.velocity, (after - before).norm() / window);
+      largest.acceleration = std::max(largest.acceleration, change.norm());
+      largest.along_axis = std::max(largest.along_axis, change.lpNorm<Eigen::Infinity>());
+    }
+  }
+  return largest;
+}
+
+void add_sampled(const Schedule& schedule, const RigOptions& rig, std::vector<std::string>& refusals) {
+  const double window = std::max(rig.blend_time, kShortestWindow);
+  std::vector<std::string> accelerations;
+  double fastest = 0;
+  const auto see = [&](int g, const Extremes& extremes) {
+    fastest = std::max(fastest, extremes.velocity);
+    add_excess(g, extremes, window, kScatter, rig, accelerations);
+  };
+  for (int g = 0; g < int(schedule.paths.size()); ++g) {
+    see(g, differences(schedule.paths[size_t(g)], window,
+                       [&](double t) { return Eigen::Vector3d(0, 0, schedule.command(g, t).z); }));
+    if (schedule.plane_paths.empty()) continue;
+    see(g, differences(schedule.plane_paths[size_t(g)], window, [&](double t) {
+          const Eigen::Vector2d xy = schedule.command(g, t).xy;
+          return Eigen::Vector3d(xy.x(), xy.y(), 0);
+        }));
+  }
+  add_velocity(fastest, kScatter, rig, refusals);
+  refusals.insert(refusals.end(), accelerations.begin(), accelerations.end());
+}
+
+void add_blended(const Schedule& schedule, const RigOptions& rig, std::vector<std::string>& refusals) {
+  const double fastest = schedule.largest_velocity();
+  add_velocity(fastest, kRounding, rig, refusals);
+  if (schedule.blend_time > 0) {
+    add_accelerations(schedule.paths, schedule.blend_time, rig, refusals);
+    add_accelerations(schedule.plane_paths, schedule.blend_time, rig, refusals);
+  } else if (rig.max_acceleration && fastest > 0) {
+    refusals.emplace_back(
+        "changes its velocities at once: without a blend time no acceleration is small enough for "
+        "grippers.max_acceleration");
   }
 }
 
@@ -128,20 +205,12 @@ void add_stretched_interlinks(const Schedule& schedule, const RigOptions& rig,
 
 }  // namespace
 
-std::vector<std::string> rig_refusals(const Schedule& schedule, const RigOptions& rig) {
+std::vector<std::string> rig_refusals(const Schedule& schedule, const RigOptions& rig, PathKind kind) {
   std::vector<std::string> refusals;
-  const double fastest = schedule.largest_velocity();
-  if (fastest > rig.max_velocity * (1 + kRounding))
-    refusals.push_back(fmt::format("moves at up to {:g} m/s, more than grippers.max_velocity ({:g} m/s)",
-                                   fastest, rig.max_velocity));
-  if (schedule.blend_time > 0) {
-    add_accelerations(schedule.paths, schedule.blend_time, rig, refusals);
-    add_accelerations(schedule.plane_paths, schedule.blend_time, rig, refusals);
-  } else if (rig.max_acceleration && fastest > 0) {
-    refusals.emplace_back(
-        "changes its velocities at once: without a blend time no acceleration is small enough for "
-        "grippers.max_acceleration");
-  }
+  if (kind == PathKind::sampled)
+    add_sampled(schedule, rig, refusals);
+  else
+    add_blended(schedule, rig, refusals);
   add_stretched_interlinks(schedule, rig, refusals);
   return refusals;
 }

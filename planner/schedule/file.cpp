@@ -17,22 +17,6 @@
 namespace drapeplan {
 namespace {
 
-/// Samples closer than this are one: far below any controller's cycle, far above round-off.
-constexpr double kSameTime = 1e-9;  // [s]
-
-void check_fits(const Schedule& schedule, const RigOptions& rig) {
-  const auto empty = [](const auto& path) { return path.empty(); };
-  const auto check = [&](const auto& paths, size_t count, const std::string& kind) {
-    const bool empty_path = std::any_of(paths.begin(), paths.end(), empty);
-    if (paths.size() == count && !empty_path) return;
-    throw std::invalid_argument(fmt::format("a schedule of {}{} paths for a rig of {} grippers{}",
-                                            paths.size(), kind, rig.count(),
-                                            empty_path ? ", one without knots" : ""));
-  };
-  check(schedule.paths, size_t(rig.count()), "");
-  check(schedule.plane_paths, rig.driven == Driven::xyz ? size_t(rig.count()) : 0, " in-plane");
-}
-
 /// As `exact`, but always a floating-point number to a JSON reader: an integer "-0" would lose its sign.
 std::string json_number(double value) {
   if (!std::isfinite(value)) throw std::invalid_argument("a schedule holds a number that is not finite");
@@ -142,30 +126,6 @@ Schedule to_schedule(ScheduleFields fields, const RigOptions& rig, FieldReader& 
   return schedule;
 }
 
-/// Knots, ends of their blends and a regular raster: increasing, from 0 to the schedule's end.
-std::vector<double> sample_times(const Schedule& schedule, size_t gripper, double rate) {
-  const double end = schedule.duration();
-  std::vector<double> times{0.0, end};
-  const auto add_corners = [&](const auto& path) {
-    for (const auto& knot : path) {
-      times.push_back(knot.time);
-      times.push_back(knot.time + schedule.blend_time);
-    }
-  };
-  add_corners(schedule.paths[gripper]);
-  if (!schedule.plane_paths.empty()) add_corners(schedule.plane_paths[gripper]);
-  if (gripper < schedule.release.size() && schedule.release[gripper])
-    times.push_back(*schedule.release[gripper]);
-  for (int k = 1; k / rate < end; ++k) times.push_back(k / rate);
-  std::sort(times.begin(), times.end());
-  std::vector<double> distinct;
-  for (const double time : times) {
-    if (time > end + kSameTime) break;
-    if (distinct.empty() || time - distinct.back() > kSameTime) distinct.push_back(time);
-  }
-  return distinct;
-}
-
 std::string plane_text(const Schedule& schedule, size_t gripper) {
   if (schedule.plane_paths.empty()) return "";
   std::string text;
@@ -181,15 +141,23 @@ std::string release_text(const Schedule& schedule, size_t gripper) {
   return ", \"release\": " + json_number(*schedule.release[gripper]);
 }
 
-bool ever_released(const Schedule& schedule) {
-  return std::any_of(schedule.release.begin(), schedule.release.end(),
-                     [](const auto& time) { return time.has_value(); });
-}
-
 }  // namespace
 
+void require_fit(const Schedule& schedule, const RigOptions& rig) {
+  const auto empty = [](const auto& path) { return path.empty(); };
+  const auto check = [&](const auto& paths, size_t count, const std::string& kind) {
+    const bool empty_path = std::any_of(paths.begin(), paths.end(), empty);
+    if (paths.size() == count && !empty_path) return;
+    throw std::invalid_argument(fmt::format("a schedule of {}{} paths for a rig of {} grippers{}",
+                                            paths.size(), kind, rig.count(),
+                                            empty_path ? ", one without knots" : ""));
+  };
+  check(schedule.paths, size_t(rig.count()), "");
+  check(schedule.plane_paths, rig.driven == Driven::xyz ? size_t(rig.count()) : 0, " in-plane");
+}
+
 void write_schedule(const std::filesystem::path& file, const Schedule& schedule, const RigOptions& rig) {
-  check_fits(schedule, rig);
+  require_fit(schedule, rig);
   // Written by hand, one gripper per line: a person can read and edit it.
   std::string text = fmt::format("{{\n  \"format\": \"{}\",\n  \"blend_time\": {},\n  \"grippers\": [\n",
                                  kScheduleFormat, json_number(schedule.blend_time));
@@ -217,32 +185,6 @@ ScheduleReading read_schedule(const std::filesystem::path& file, const RigOption
   reading.errors.insert(reading.errors.end(), reader.errors().begin(), reader.errors().end());
   document.sort(reading.errors);
   return reading;
-}
-
-void write_schedule_csv(const std::filesystem::path& file, const Schedule& schedule, const RigOptions& rig,
-                        double rate) {
-  check_fits(schedule, rig);
-  if (!(rate > 0))
-    throw std::invalid_argument("write_schedule_csv: the rate must be > 0, it is " + exact(rate));
-  const bool plane = !schedule.plane_paths.empty(), suction = ever_released(schedule);
-  std::string text = fmt::format("gripper_i,gripper_j,time_s,z_m,vz_m_per_s{}{}\n",
-                                 plane ? ",x_m,y_m,vx_m_per_s,vy_m_per_s" : "", suction ? ",suction" : "");
-  for (size_t g = 0; g < schedule.paths.size(); ++g) {
-    const auto [i, j] = rig.indices(int(g));
-    const std::string name = fmt::format("{},{},", i, j);
-    for (const double time : sample_times(schedule, g, rate)) {
-      const Command command = schedule.command(int(g), time);
-      std::vector<double> values{time, command.z, command.vz};
-      if (plane)
-        values.insert(values.end(),
-                      {command.xy.x(), command.xy.y(), command.v_plane.x(), command.v_plane.y()});
-      if (suction) values.push_back(schedule.released(int(g), time) ? 0 : 1);
-      text += name;
-      for (size_t k = 0; k < values.size(); ++k) text += (k > 0 ? "," : "") + exact(values[k]);
-      text += "\n";
-    }
-  }
-  write_text(file, text);
 }
 
 }  // namespace drapeplan

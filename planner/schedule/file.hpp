@@ -1,4 +1,4 @@
-// Schedules as files: JSON for us, CSV for a robot controller.
+// Schedules as JSON, by their knots.
 #pragma once
 
 #include <filesystem>
@@ -12,6 +12,10 @@
 namespace drapeplan {
 
 inline constexpr const char* kScheduleFormat = "drapeplan-schedule 1";
+
+/// @throws std::invalid_argument unless a schedule has one path with knots per gripper of the rig, in-plane
+/// ones where the rig drives x and y and nowhere else.
+void require_fit(const Schedule& schedule, const RigOptions& rig);
 
 /// Writes schedule.json: the knots of every gripper's joint [s], [m]; `plane_knots` (x, y) if the rig drives
 /// these; `release` [s] where the suction ends. Reading it again gives the same bits.
@@ -29,13 +33,5 @@ struct ScheduleReading {
 /// times that do not increase from 0, and all that parse_json_text refuses. The rig's velocity limit is not
 /// checked here. Never throws for bad input.
 ScheduleReading read_schedule(const std::filesystem::path& file, const RigOptions& rig);
-
-/// Writes schedule.csv: `gripper_i,gripper_j,time_s,z_m,vz_m_per_s`, gripper by gripper, times increasing.
-/// Then `x_m,y_m,vx_m_per_s,vy_m_per_s` if the rig drives x and y, and `suction` (1 or 0) if it ever ends.
-/// Samples: each knot and the end of its blend (between them z is a parabola), and in between every 1 /
-/// `rate`.
-/// @param rate  [1/s], > 0.
-void write_schedule_csv(const std::filesystem::path& file, const Schedule& schedule, const RigOptions& rig,
-                        double rate = 100);
 
 }  // namespace drapeplan

@@ -6,15 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <optional>
-#include <sstream>
-#include <system_error>
 #include <utility>
 
 #include "planner/base/quantity.hpp"
 #include "planner/base/text.hpp"
+#include "planner/tables/table_text.hpp"
 
 namespace drapeplan {
 namespace {
@@ -67,13 +65,6 @@ const QuantityWords& words_of(TestQuantity quantity) {
                        [&](const QuantityWords& words) { return words.quantity == quantity; });
 }
 
-std::string trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r\"";
-  const size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(kBlanks) - first + 1));
-}
-
 std::string lower(std::string text) {
   for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
   return text;
@@ -88,7 +79,7 @@ Header header_of(const std::string& cell) {
   const size_t open = cell.find_last_of("([");
   const bool unit = open != std::string::npos && (cell.back() == ')' || cell.back() == ']');
   if (!unit) return {cell, {}};
-  return {trimmed(cell.substr(0, open)), trimmed(cell.substr(open + 1, cell.size() - open - 2))};
+  return {trimmed_cell(cell.substr(0, open)), trimmed_cell(cell.substr(open + 1, cell.size() - open - 2))};
 }
 
 /// As machines write units: "sec", "°".
@@ -99,11 +90,6 @@ std::string usual_unit(const std::string& unit) {
   if (inner == "°" || lower(inner) == "degrees") return "deg";
   return inner;
 }
-
-struct Line {
-  int number = 0;
-  std::vector<std::string> cells;
-};
 
 class TableReader {
  public:
@@ -130,18 +116,9 @@ class TableReader {
   }
 
   bool load(std::string& text) {
-    FileText file = read_file(file_);
-    if (!file.fault.empty()) return fail(0, "", "cannot be read: " + file.fault);
-    text = std::move(file.text);
-    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
-      return fail(1, "", "is UTF-16; please export it as plain text or UTF-8");
-    const size_t nul = text.find('\0');
-    if (nul != std::string::npos)
-      return fail(1 + int(std::count(text.begin(), text.begin() + std::ptrdiff_t(nul), '\n')), "",
-                  "has a NUL byte: it is no text, or UTF-16; please export it as plain text or UTF-8");
-    if (trimmed(text).find_first_not_of("\n") == std::string::npos) return fail(1, "", "is empty");
-    return true;
+    std::optional<InputError> fault = load_table_text(file_, text);
+    if (fault) reading_.errors.push_back(std::move(*fault));
+    return !fault;
   }
 
   /// Splits lines into cells by the first separator with which a row has the names that are sought: notes may hold
@@ -162,24 +139,14 @@ class TableReader {
   bool split(const std::string& text, char separator) {
     constexpr size_t kMostCells = 1000;  // no test has so many channels
     lines_.clear();
-    std::istringstream stream(text);
-    std::string line;
-    for (int number = 1; std::getline(stream, line); ++number) {
-      Line one{number, {}};
-      bool quoted = false, blank = true;
-      size_t begin = 0;
-      for (size_t k = 0; k <= line.size(); ++k) {
-        if (k < line.size() && line[k] == '"') quoted = !quoted;
-        if (k < line.size() && (line[k] != separator || quoted)) continue;
-        one.cells.push_back(trimmed(std::string_view(line).substr(begin, k - begin)));
-        blank = blank && one.cells.back().empty();
-        begin = k + 1;
-        if (one.cells.size() > kMostCells)
-          return fail(number, "", fmt::format("has more than {} columns: it is no table of a test", kMostCells));
-      }
-      if (!blank) lines_.push_back(std::move(one));
-    }
-    return !lines_.empty() || fail(1, "", "is empty");
+    split_table(text, separator, kMostCells, [this](TableLine&& line) {
+      lines_.push_back(std::move(line));
+      return lines_.back().cells.size() <= kMostCells;
+    });
+    if (lines_.empty()) return fail(1, "", "is empty");
+    return lines_.back().cells.size() <= kMostCells ||
+           fail(lines_.back().number, "",
+                fmt::format("has more than {} columns: it is no table of a test", kMostCells));
   }
 
   [[nodiscard]] bool is_called(const WantedColumn& wanted, const std::string& cell) const {
@@ -198,7 +165,7 @@ class TableReader {
       bool all = true;
       for (const WantedColumn& wanted : wanted_) {
         std::vector<Column> found;
-        const Line& line = lines_[names_];
+        const TableLine& line = lines_[names_];
         for (size_t k = 0; k < line.cells.size(); ++k) {
           if (is_called(wanted, line.cells[k]))
             found.push_back({wanted.quantity, k, header_of(line.cells[k]), nullptr});
@@ -229,7 +196,7 @@ class TableReader {
     const bool beside =
         std::all_of(columns_.begin(), columns_.end(), [](const Column& c) { return !c.header.unit.empty(); });
     if (!beside && first_row_ < lines_.size()) {
-      const Line& below = lines_[first_row_];
+      const TableLine& below = lines_[first_row_];
       for (Column& column : columns_) {
         const std::string cell = column.index < below.cells.size() ? below.cells[column.index] : "";
         const bool number = !cell.empty() && (std::isdigit(static_cast<unsigned char>(cell.back())) != 0);
@@ -258,15 +225,11 @@ class TableReader {
       const size_t comma = cell.find(',');
       if (comma != std::string::npos) cell[comma] = '.';
     }
-    if (cell.starts_with('+') && !cell.starts_with("+-")) cell.erase(0, 1);
-    double value = 0;
-    const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (fault != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
-    return value;
+    return cell_number(cell);
   }
 
   /// A file has one decimal sign. With a second one numbers of three digits behind it cannot be told from thousands.
-  bool has_one_sign(const Line& line, const Column& column, const std::string& cell) {
+  bool has_one_sign(const TableLine& line, const Column& column, const std::string& cell) {
     if (!decimal_comma_) return true;
     for (const char sign : {'.', ','}) {
       if (cell.find(sign) == std::string::npos) continue;
@@ -281,7 +244,7 @@ class TableReader {
   }
 
   /// Cells that no column belongs to are decimal commas that separate.
-  bool has_columns(const Line& line) {
+  bool has_columns(const TableLine& line) {
     const auto used = [](const std::vector<std::string>& cells) {
       size_t count = cells.size();
       while (count > 0 && cells[count - 1].empty()) --count;
@@ -295,7 +258,7 @@ class TableReader {
                             cells, lines_[names_].number, names));
   }
 
-  bool read_cell(const Line& line, const Column& column) {
+  bool read_cell(const TableLine& line, const Column& column) {
     const std::string cell = column.index < line.cells.size() ? line.cells[column.index] : "";
     const std::optional<double> value = number(cell);
     if (!value)
@@ -313,7 +276,7 @@ class TableReader {
     TestTable& table = reading_.table;
     for (const Column& column : columns_) table.columns[column.quantity];
     for (size_t k = first_row_; k < lines_.size(); ++k) {
-      const Line& line = lines_[k];
+      const TableLine& line = lines_[k];
       for (const Column& column : columns_) {
         if (!read_cell(line, column)) return;
       }
@@ -328,7 +291,7 @@ class TableReader {
   const std::filesystem::path& file_;
   const std::vector<WantedColumn>& wanted_;
   size_t fewest_;
-  std::vector<Line> lines_;
+  std::vector<TableLine> lines_;
   bool decimal_comma_ = false;
   char sign_ = 0;       ///< the decimal sign of the first number that has one
   int sign_line_ = 0;

@@ -26,13 +26,37 @@ within "$work/first.json" /dt 1e-9 1e-2
 expect 0 simulate "$quick" --json --fidelity screen --out "$work/out" --frames 2
 same "$(value "$work/first.json" /state_hash)" "$(value "$work/stdout" /state_hash)" "two runs"
 same_file "$work/stdout" "$work/out/result.json"
-for file in resolved.json schedule.json schedule.csv ply.pvd ply_000.vtu ply_001.vtu mold.vtu drape.svg; do
+for file in resolved.json schedule.json schedule.csv schedule.csv-metadata.json schedule_wide.csv schedule_ros2.yaml ply.pvd ply_000.vtu ply_001.vtu mold.vtu drape.svg; do
   [ -s "$work/out/$file" ] || fail "simulate: $file is missing or empty"
 done
 expect 0 simulate "$work/out/resolved.json" --json --fidelity screen
 same "$(value "$work/first.json" /state_hash)" "$(value "$work/stdout" /state_hash)" "resolved case"
 expect 0 simulate "$quick" --json --fidelity screen --schedule "$work/out/schedule.json"
 same "$(value "$work/first.json" /state_hash)" "$(value "$work/stdout" /state_hash)" "schedule read from its file"
+
+# The motion read back from the files for a robot gives the same drape, as near as rounding and cycle let it.
+expect 0 simulate "$quick" --quiet --fidelity screen --out "$work/fine" --cycle '4 ms' --frames 2
+same "$(sed -n 3p "$work/fine/schedule.csv" | cut -d, -f3)" 0.004 "second row with --cycle"
+grep -q '^# case: flexdraper-quick, hash [0-9a-f]\{16\}$' "$work/fine/schedule_wide.csv" || fail "no case in the head"
+for file in schedule.csv schedule_wide.csv; do
+  expect 0 simulate "$quick" --json --fidelity screen --schedule "$work/fine/$file" --out "$work/again" --frames 2
+  for part in max_gap rms_gap max_boundary_offset; do
+    near=$(value "$work/first.json" "/score/$part")
+    within "$work/stdout" "/score/$part" $(awk -v v="$near" 'BEGIN {print v - 2e-5, v + 2e-5}')   # 0.02 mm
+  done
+  [ -s "$work/again/schedule_ros2.yaml" ] || fail "$file: no trajectory of a motion that was read"
+done
+refuse '--cycle: "5 mm"' simulate "$quick" --cycle '5 mm'
+refuse '--cycle: "2 s": out of range; allowed: whole microseconds from 0.1 ms to 100 ms' simulate "$quick" --cycle '2 s'
+refuse '--cycle' plan "$quick" --cycle 4
+# Logs that are wrong: each error with its line, and what the rig cannot follow.
+log=$work/log.csv
+sed '5s/.*/1,1,0.001,0.1,0/; 7s/,[^,]*$/,nan/' "$work/fine/schedule.csv" >"$log"
+refuse "$log:5: time_s: 0.001: times must increase; [1, 1] was at 0.008 before" simulate "$quick" --schedule "$log"
+refuse "$log:7: vz_m_per_s: \"nan\" is no finite number" simulate "$quick" --schedule "$log"
+grep -v '^3,3,' "$work/fine/schedule.csv" >"$log"
+refuse "$log:1: no row for gripper [3, 3]" simulate "$quick" --schedule "$log"
+refuse 'moves at up to' simulate "$quick" --schedule "$work/fine/schedule.csv" --set 'grippers.max_velocity=5 mm/s'
 
 # A drape that leaves what a curve is known to hold for says so, and moves as before; shipped materials are stable.
 value "$work/first.json" /warnings | grep -qF 'beyond what material' && fail "a warning of what was not reached"
@@ -105,4 +129,4 @@ refuse "$work/empty.json" simulate "$quick" --schedule "$work/empty.json"
 touch "$work/file"
 expect 2 simulate "$quick" --fidelity screen --quiet --out "$work/file/below"
 grep -qF "$work/file/below" "$work/stderr" || fail "no path: $(cat "$work/stderr")"
-finish 60
+finish 80

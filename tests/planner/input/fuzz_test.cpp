@@ -12,6 +12,7 @@
 #include "planner/base/json_text.hpp"
 #include "planner/case/file.hpp"
 #include "planner/schedule/file.hpp"
+#include "planner/schedule/motion_file.hpp"
 #include "planner/tables/test_table.hpp"
 
 namespace drapeplan {
@@ -112,6 +113,32 @@ TEST(DamagedInput, SchedulesAreReadOrRefusedWithPlaces) {
     }
     return reading.errors;
   });
+}
+
+TEST(DamagedInput, MotionsAreReadOrRefusedWithTheirLine) {
+  RigOptions rig;
+  rig.columns = 2;
+  rig.rows = 1;
+  std::string tall = "gripper_i,gripper_j,time_s,z_m,vz_m_per_s,suction\n",
+              wide = "# ours\ntime_s;z_1_1_m;z_2_1_m\r\n";
+  for (int k = 0; k < 8; ++k) {
+    const std::string n = std::to_string(k);
+    tall += "1,1,0.0" + n + ",0.3,0,1\n2,1,0.0" + n + ",0.2" + n + ",0.5e0,0\n";
+    wide += n + ".5;0.3;+0.0" + n + "\r\n";
+  }
+  unsigned seed = 23;
+  for (const std::string& original : {tall, wide}) {
+    damage_and_read(original, 700, seed++, [&rig](const fs::path& file) {
+      const ScheduleReading reading = read_motion(file, rig);
+      for (const InputError& error : reading.errors)
+        EXPECT_TRUE(error.file == file.string() && error.line > 0);
+      if (reading.errors.empty()) {
+        for (const double time : {-1.0, 0.0, 0.031, 1e4})
+          EXPECT_TRUE(std::isfinite(reading.value.command(0, time).z + reading.value.command(1, time).vz));
+      }
+      return reading.errors;
+    });
+  }
 }
 
 TEST(DamagedInput, TablesAreFiniteOrRefusedWithTheirLine) {

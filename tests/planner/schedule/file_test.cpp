@@ -3,12 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 #include "planner/base/text.hpp"
 
@@ -206,55 +202,6 @@ TEST_F(ScheduleFile, InPlanePathsBelongToRigsThatDriveXAndY) {
             "/grippers/1/plane_knots/0/x: \"left\": expected a bare number, e.g. 0.5\n"
             "/grippers/1/plane_knots/1/z: unknown key \"z\"; known: \"time\", \"x\" or \"y\"\n"
             "/grippers/1/plane_knots/1/time: 0: times must increase; the knot before is at 0\n");
-}
-
-TEST_F(ScheduleFile, CsvHasColumnsForWhatTheScheduleHasOnly) {
-  const auto header_and_last = [this](const Schedule& schedule) {
-    write_schedule_csv(file_, schedule, rig_, 10);
-    std::ifstream stream(file_);
-    std::string header, line, last;
-    std::getline(stream, header);
-    while (std::getline(stream, line)) last = line;
-    return std::pair{header, last};
-  };
-  Schedule schedule{{{{0, 1}}, {{0, 1}, {2, 0.5}}}, 0.5};
-  schedule.release = {std::nullopt, 2.0};
-  EXPECT_EQ(header_and_last(schedule),
-            (std::pair<std::string, std::string>{"gripper_i,gripper_j,time_s,z_m,vz_m_per_s,suction",
-                                                 "2,1,2.5,0.5,0,0"}));
-  schedule.release.clear();
-  rig_.driven = Driven::xyz;
-  schedule.plane_paths = {{{0, {0, 0}}}, {{0, {0.25, 1}}}};
-  EXPECT_EQ(header_and_last(schedule),
-            (std::pair<std::string, std::string>{
-                "gripper_i,gripper_j,time_s,z_m,vz_m_per_s,x_m,y_m,vx_m_per_s,vy_m_per_s",
-                "2,1,2.5,0.5,0,0.25,1,0,0"}));
-}
-
-TEST_F(ScheduleFile, CsvHoldsKnotsBlendsAndARaster) {
-  const Schedule schedule{{{{0, 1}, {0.55, 0.9}, {1.003, 0.5}}, {{0, 1}}}, 0.1};
-  write_schedule_csv(file_, schedule, rig_, 10);
-  std::ifstream stream(file_);
-  std::string line;
-  std::getline(stream, line);
-  EXPECT_EQ(line, "gripper_i,gripper_j,time_s,z_m,vz_m_per_s");
-  std::vector<double> times;
-  int still = 0;
-  while (std::getline(stream, line)) {
-    int i = 0, j = 0;
-    double time = 0, z = 0, vz = 0;
-    ASSERT_EQ(std::sscanf(line.c_str(), "%d,%d,%lf,%lf,%lf", &i, &j, &time, &z, &vz), 5) << line;
-    EXPECT_EQ(j, 1);
-    const Command command = schedule.command(i - 1, time);
-    EXPECT_EQ(z, command.z);
-    EXPECT_EQ(vz, command.vz);
-    if (i == 1) times.push_back(time);
-    if (i == 2) still += std::abs(z - 1) <= 1e-12 && vz == 0;
-  }
-  const std::vector<double> expected{0,          0.1, 0.2, 0.3, 0.4, 0.5,   0.55, 0.6,
-                                     0.55 + 0.1, 0.7, 0.8, 0.9, 1.0, 1.003, 1.1,  1.003 + 0.1};
-  EXPECT_EQ(times, expected);
-  EXPECT_GE(still, 12);
 }
 
 }  // namespace
