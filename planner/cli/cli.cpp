@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -104,8 +103,8 @@ void add_cycle(CLI::App& verb, std::string& cycle) {
   verb.add_option(
           "--cycle", cycle,
           fmt::format("cycle of the robot's controller, as \"4 ms\", for schedule.csv and the other files "
-                      "for a robot (default: {})",
-                      format_quantity(kDefaultCycle, Dimension::time)))
+                      "for a robot (default: {:g} ms)",
+                      1e3 * kDefaultCycle))
       ->type_name("TIME");
 }
 
@@ -114,12 +113,10 @@ double cycle_of(const std::string& text) {
   std::string fault;
   const std::optional<double> time = parse_quantity(text, Dimension::time, fault);
   if (!time) throw WrongInput("--cycle: " + fault);
-  const double steps = *time / kCycleStep;
-  if (*time >= kShortestCycle && *time <= kLongestCycle && std::abs(steps - std::round(steps)) <= 1e-6)
-    return *time;
-  throw WrongInput(fmt::format("--cycle: \"{}\": out of range; allowed: whole microseconds from {} to {}",
-                               text, format_quantity(kShortestCycle, Dimension::time),
-                               format_quantity(kLongestCycle, Dimension::time)));
+  if (is_cycle(*time)) return *time;
+  throw WrongInput(
+      fmt::format("--cycle: \"{}\": out of range; allowed: whole microseconds from {:g} ms to {:g} ms", text,
+                  1e3 * kShortestCycle, 1e3 * kLongestCycle));
 }
 
 OutputFolder take_folder(const CommonOptions& options, const std::string& verb) {

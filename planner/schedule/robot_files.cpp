@@ -220,14 +220,19 @@ std::string column_name(MotionColumn column, const std::array<int, 2>& gripper) 
   return fmt::format("{}_{}_{}{}", words_of(column).name, gripper[0], gripper[1], words_of(column).unit);
 }
 
+bool is_cycle(double time) {
+  constexpr double kRoundOff = 1e-6;  // of a step
+  const double steps = time / kCycleStep;
+  return time >= kShortestCycle && time <= kLongestCycle && std::abs(steps - std::round(steps)) <= kRoundOff;
+}
+
 std::vector<double> raster(const Schedule& schedule, double cycle) {
+  if (!is_cycle(cycle)) throw std::invalid_argument("a cycle of " + exact(cycle) + " s");
+  constexpr double kRoundOff = 1e-9;  // [s], of the end: below it no further cycle is needed
   const double steps = std::round(cycle / kCycleStep);
-  if (!(cycle >= kShortestCycle && cycle <= kLongestCycle) ||
-      std::abs(steps * kCycleStep - cycle) > 1e-3 * kCycleStep)
-    throw std::invalid_argument("a cycle of " + exact(cycle) + " s");
-  const double end = std::ceil((schedule.duration() - 1e-3 * kCycleStep) / cycle);
+  const double last = std::ceil((schedule.duration() - kRoundOff) / cycle);
   std::vector<double> times;
-  for (int k = 0; k <= end; ++k) times.push_back(k * steps / std::round(1 / kCycleStep));
+  for (int k = 0; k <= last; ++k) times.push_back(k * steps / std::round(1 / kCycleStep));
   return times;
 }
 

@@ -17,6 +17,8 @@ namespace drapeplan {
 inline constexpr double kDefaultCycle = 0.010;
 /// Shortest and longest cycle, and what it is a multiple of [s].
 inline constexpr double kShortestCycle = 1e-4, kLongestCycle = 0.1, kCycleStep = 1e-6;
+/// Whether a time [s] is within these limits and a multiple of that step.
+bool is_cycle(double time);
 
 /// What columns of a table hold. World frame; the places are those of the grippers' joints.
 enum class MotionColumn { gripper_i, gripper_j, time, z, vz, x, y, vx, vy, suction };
@@ -33,7 +35,7 @@ struct RobotFileOptions {
 };
 
 /// Instants at which all grippers are commanded: multiples of the cycle from 0 to the first one at or after
-/// the end of the schedule [s]. @throws std::invalid_argument for a cycle that is no such.
+/// the end of the schedule [s]. @throws std::invalid_argument unless is_cycle(cycle).
 std::vector<double> raster(const Schedule& schedule, double cycle);
 
 /// Writes schedule.csv: `gripper_i,gripper_j,time_s,z_m,vz_m_per_s`, gripper by gripper, all on the raster.

@@ -52,5 +52,19 @@ TEST(Schedule, CommandsAVelocityThatIsTheDerivativeOfItsHeight) {
   }
 }
 
+TEST(Schedule, WithoutBlendsAPathIsItsPolygonHoweverManyKnotsItHas) {
+  Schedule schedule;
+  schedule.paths.emplace_back();
+  for (int k = 0; k <= 5000; ++k) schedule.paths[0].push_back({0.001 * k, 1 - 0.01 * (k % 2)});
+  EXPECT_EQ(schedule.command(0, -1).z, 1);
+  EXPECT_EQ(schedule.command(0, 0).z, 1);
+  EXPECT_EQ(schedule.command(0, schedule.paths[0][3001].time).z, schedule.paths[0][3001].z);
+  EXPECT_NEAR(schedule.command(0, 3.0005).z, 0.995, 1e-12);
+  EXPECT_NEAR(schedule.command(0, 3.0005).vz, -10, 1e-6);
+  EXPECT_EQ(schedule.command(0, 5).z, 1);
+  EXPECT_EQ(schedule.command(0, 6).z, 1);
+  EXPECT_EQ(schedule.command(0, 6).vz, 0);
+}
+
 }  // namespace
 }  // namespace drapeplan

@@ -34,7 +34,8 @@ same "$(value "$work/first.json" /state_hash)" "$(value "$work/stdout" /state_ha
 expect 0 simulate "$quick" --json --fidelity screen --schedule "$work/out/schedule.json"
 same "$(value "$work/first.json" /state_hash)" "$(value "$work/stdout" /state_hash)" "schedule read from its file"
 
-# The motion read back from the files for a robot gives the same drape, as near as rounding and cycle let it.
+# The motion read back from the files for a robot gives the same drape: gaps of this case move by 0.04 mm when knots
+# move by 2 um, which is what reading back is known to.
 expect 0 simulate "$quick" --quiet --fidelity screen --out "$work/fine" --cycle '4 ms' --frames 2
 same "$(sed -n 3p "$work/fine/schedule.csv" | cut -d, -f3)" 0.004 "second row with --cycle"
 grep -q '^# case: flexdraper-quick, hash [0-9a-f]\{16\}$' "$work/fine/schedule_wide.csv" || fail "no case in the head"
@@ -42,11 +43,11 @@ for file in schedule.csv schedule_wide.csv; do
   expect 0 simulate "$quick" --json --fidelity screen --schedule "$work/fine/$file" --out "$work/again" --frames 2
   for part in max_gap rms_gap max_boundary_offset; do
     near=$(value "$work/first.json" "/score/$part")
-    within "$work/stdout" "/score/$part" $(awk -v v="$near" 'BEGIN {print v - 2e-5, v + 2e-5}')   # 0.02 mm
+    within "$work/stdout" "/score/$part" $(awk -v v="$near" 'BEGIN {print v - 1e-4, v + 1e-4}')
   done
   [ -s "$work/again/schedule_ros2.yaml" ] || fail "$file: no trajectory of a motion that was read"
 done
-refuse '--cycle: "5 mm"' simulate "$quick" --cycle '5 mm'
+refuse '--cycle: "mm" is the unit of a length' simulate "$quick" --cycle '5 mm'
 refuse '--cycle: "2 s": out of range; allowed: whole microseconds from 0.1 ms to 100 ms' simulate "$quick" --cycle '2 s'
 refuse '--cycle' plan "$quick" --cycle 4
 # Logs that are wrong: each error with its line, and what the rig cannot follow.

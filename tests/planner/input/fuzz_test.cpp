@@ -123,7 +123,7 @@ TEST(DamagedInput, MotionsAreReadOrRefusedWithTheirLine) {
               wide = "# ours\ntime_s;z_1_1_m;z_2_1_m\r\n";
   for (int k = 0; k < 8; ++k) {
     const std::string n = std::to_string(k);
-    tall += "1,1,0.0" + n + ",0.3,0,1\n2,1,0.0" + n + ",0.2" + n + ",0.5e0,0\n";
+    tall += "1,1,0.0" + n + ",0.3,0,1\n2,1,0.0" + n + ",0.2" + n + ",1e0,0\n";
     wide += n + ".5;0.3;+0.0" + n + "\r\n";
   }
   unsigned seed = 23;
