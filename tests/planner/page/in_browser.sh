@@ -37,7 +37,7 @@ for (const name of ["error", "warn"]) console[name] = (...words) => pageErrors.p
 software=(--use-angle=swiftshader --enable-unsafe-swiftshader)
 for theme in 1 0; do   # light, dark
   browse "$page" "${software[@]}" --blink-settings=preferredColorScheme=$theme
-  has 'checks, 0 failed' "theme $theme: $(grep -A 20 'verdict:' "$work/dom" || echo "no verdict; $(tail -n 3 "$work/browser")")"
+  has ' checks, 0 failed' "theme $theme: $(sed -n '/<pre>verdict/,/<\/pre>/p' "$work/dom"; tail -n 3 "$work/browser")"
 done
 browse "$work/run/report.html" --disable-3d-apis
 has '<section class="view" id="view" hidden' "without WebGL the view is not hidden"
