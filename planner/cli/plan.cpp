@@ -5,12 +5,13 @@
 #include <chrono>
 #include <cmath>
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "mapping/error.hpp"
 #include "planner/base/quantity.hpp"
 #include "planner/base/text.hpp"
+#include "planner/batch/run_folders.hpp"
+#include "planner/batch/summary.hpp"
 #include "planner/cli/cli.hpp"
 #include "planner/cli/process.hpp"
 #include "planner/drape/run_checks.hpp"
@@ -173,30 +174,6 @@ PlannedCase plan_case(Case definition, const PlanVerbOptions& options, OutputFol
           .interrupted = interrupted};
 }
 
-/// A run directory per case: --out itself for a single case, else a folder below it by the case file's name.
-std::vector<std::filesystem::path> run_folders(const PlanVerbOptions& options) {
-  const std::filesystem::path root = options.common.out.empty() ? "out" : options.common.out;
-  if (options.files.size() == 1 && !options.common.out.empty()) return {root};
-  std::vector<std::filesystem::path> folders;
-  for (const std::string& file : options.files) folders.push_back(root / std::filesystem::path(file).stem());
-  return folders;
-}
-
-/// Two cases in one folder would overwrite each other: adds an error for each such pair.
-void refuse_shared_folders(const std::vector<std::string>& files,
-                           const std::vector<std::filesystem::path>& folders,
-                           std::vector<InputError>& errors) {
-  std::map<std::filesystem::path, std::string> owner;
-  for (size_t k = 0; k < files.size(); ++k) {
-    const auto [found, fresh] = owner.try_emplace(folders[k], files[k]);
-    if (fresh) continue;
-    errors.push_back({files[k], 0, "",
-                      fmt::format("would be planned in the folder of {}, {}; plan them in two calls with "
-                                  "different --out, or rename one",
-                                  found->second, folders[k].string())});
-  }
-}
-
 /// Plans one case and adds its result to the list: of a case that could not be planned, its name and why.
 /// A bug is thrown on.
 ExitCode plan_and_add(Case definition, const std::string& file, const PlanVerbOptions& options,
@@ -241,28 +218,69 @@ void set_budget(const std::string& text, OptimiseOptions& optimise) {
   optimise.evaluations = 0;
 }
 
-int plan_all(const PlanVerbOptions& options) {
-  std::vector<Case> cases;
+/// A case of several: what is planned, or what is wrong with it.
+struct Job {
+  std::string file;
+  std::filesystem::path folder;
+  Case definition;
   std::vector<InputError> errors;
-  const std::vector<std::filesystem::path> folders = run_folders(options);
-  refuse_shared_folders(options.files, folders, errors);
-  for (const std::string& file : options.files)
-    cases.push_back(load_case(file, options.common, {"grippers", "material"}, errors));
-  if (!errors.empty()) throw InputErrors(errors);
-  for (Case& definition : cases) set_budget(options.budget, definition.optimise);
+  OutputFolder out;
+};
+
+/// Reads all cases and takes their folders. Of several, those that are wrong are left out, and named.
+/// @throws InputErrors if none can be planned, or if two would share a folder.
+std::vector<Job> read_jobs(const PlanVerbOptions& options) {
+  const std::vector<std::filesystem::path> folders = run_folders(options.files, options.common.out);
+  if (const auto errors = shared_folders(options.files, folders); !errors.empty()) throw InputErrors(errors);
+  std::vector<Job> jobs;
+  std::vector<InputError> all;
+  bool any = false;
+  for (size_t k = 0; k < options.files.size(); ++k) {
+    Job job{options.files[k], folders[k], {}, {}, {}};
+    job.definition = load_case(job.file, options.common, {"grippers", "material"}, job.errors);
+    set_budget(options.budget, job.definition.optimise);
+    all.insert(all.end(), job.errors.begin(), job.errors.end());
+    any = any || job.errors.empty();
+    jobs.push_back(std::move(job));
+  }
+  if (!any) throw InputErrors(all);
+  if (!all.empty()) std::cerr << errors_text(all) << "\nthese cases are left out\n";
+  for (Job& job : jobs) {
+    if (job.errors.empty()) job.out = OutputFolder(job.folder, "plan", options.resume ? kEvaluations : "");
+  }
+  return jobs;
+}
+
+/// One table of all cases, and its files beside their folders.
+void summarise(const std::vector<Job>& jobs, const json& results, const PlanVerbOptions& options) {
+  std::vector<PlannedLine> lines;
+  for (size_t k = 0; k < results.size(); ++k) {
+    lines.push_back(planned_line(jobs[k].file, jobs[k].folder, results[k]));
+  }
+  const std::filesystem::path root = jobs.front().folder.parent_path();
+  write_summary(root, lines);
+  if (options.common.json || options.common.quiet) return;
+  print(fmt::format("\n{}summary: {}\n", summary_text(lines), (root / "summary.html").string()), true);
+}
+
+int plan_all(const PlanVerbOptions& options) {
   cycle_of(options.cycle);  // refused before the work
-  std::vector<OutputFolder> out;
-  for (const std::filesystem::path& folder : folders)
-    out.emplace_back(folder, "plan", options.resume ? kEvaluations : "");
+  std::vector<Job> jobs = read_jobs(options);
   json results = json::array();
   int code = kDone;
-  for (size_t k = 0; k < cases.size(); ++k) {
-    const ExitCode one = plan_and_add(std::move(cases[k]), options.files[k], options, out[k], results);
+  for (Job& job : jobs) {
+    ExitCode one = kInputWrong;
+    if (job.errors.empty()) {
+      one = plan_and_add(std::move(job.definition), job.file, options, job.out, results);
+    } else {
+      results.push_back({{"case", job.file}, {"status", "wrong input"}, {"reason", errors_text(job.errors)}});
+    }
     if (code == kDone || one == kInputWrong) code = one;
     if (InterruptGuard::interrupted()) break;  // the cases that follow, too, are not wanted any more
   }
+  if (jobs.size() > 1) summarise(jobs, results, options);
   if (options.common.json)
-    print(document_text(results.size() == 1 ? results[0] : json{{"cases", results}}), true);
+    print(document_text(jobs.size() == 1 ? results[0] : json{{"cases", results}}), true);
   return code;
 }
 
