@@ -161,7 +161,9 @@ json mold_json(const Mold& mold) {
 }
 
 json field_json(const Field& field, double largest, const View& view) {
-  const ViewScale scale = view.scale(largest > 0 ? largest : 1);
+  constexpr double kLeast =
+      0.1;  // mm or degrees: what is smaller is round-off, or not worth a scale of its own
+  const ViewScale scale = view.scale(std::max(largest, kLeast));
   json classes = json::array();
   for (const auto& [value, name] : field.classes) classes.push_back({{"value", value}, {"name", name}});
   return {{"name", field.name},       {"unit", field.unit},         {"step", scale.step},

@@ -157,22 +157,34 @@ void draw_top_legend(Svg& svg, const Chart& chart, double right, double left) {
   }
 }
 
-/// One name per row, downwards.
+/// Width of the longest name of a chart's series [px].
+double widest_name(const Chart& chart) {
+  double widest = 0;
+  for (const ChartSeries& series : chart.series) widest = std::max(widest, text_width(series.name, 12));
+  return widest;
+}
+
+/// One name per row, downwards, on paper of its own.
 void draw_side_legend(Svg& svg, const Chart& chart, const Vector2d& corner) {
-  constexpr double kRow = 20;
-  double base = corner.y();
+  constexpr double kRow = 20, kRim = 12;
+  const auto names = std::count_if(chart.series.begin(), chart.series.end(),
+                                   [](const ChartSeries& series) { return !series.name.empty(); });
+  const Vector2d size(3 * kRim + widest_name(chart), kRow * double(names) + kRim);
+  svg.open_window(corner, size);
+  svg.rectangle({0, 0}, size, {.fill = ink::kSurface});
+  double base = kRow;
   for (size_t k = 0; k < chart.series.size(); ++k) {
     const ChartSeries& series = chart.series[k];
     if (series.name.empty()) continue;
     const std::string colour = series_colour(chart, k);
-    if (series.rings) {
-      svg.circle({corner.x(), base - 4}, 5, {.stroke = colour, .width = 1.6});
-    } else {
-      svg.circle({corner.x(), base - 4}, 4, {.fill = colour});
-    }
-    svg.text({corner.x() + 12, base}, series.name, {.size = 12, .colour = ink::kSoft});
+    if (series.rings)
+      svg.circle({kRim, base - 4}, 5, {.stroke = colour, .width = 1.6});
+    else
+      svg.circle({kRim, base - 4}, 4, {.fill = colour});
+    svg.text({2 * kRim, base}, series.name, {.size = 12, .colour = ink::kSoft});
     base += kRow;
   }
+  svg.close_window();
 }
 
 /// What a gripper does, in the schedule's time.
@@ -304,10 +316,11 @@ std::string line_chart(const Chart& chart) {
   }
   const auto axis_of = [](bool logarithmic) { return logarithmic ? decades : round_axis; };
   const double right = chart.side_legend ? kSideLegend : kRight;
+  const double beside = chart.side_legend ? std::max(0.0, 60 + widest_name(chart) - kSideLegend) : 0;
   const Axis x = axis_of(chart.log_x)(smallest.x(), largest.x(), kLeft, chart.width - kLeft - right);
   const Axis y = axis_of(chart.log_y)(smallest.y(), largest.y(), chart.height - kBottom,
                                       -(chart.height - kTop - kBottom));
-  Svg svg(chart.width, chart.height, chart.title);
+  Svg svg(chart.width + beside, chart.height, chart.title);
   svg.text({18, 26}, chart.title, {.size = 15, .bold = true});
   draw_axes(svg, x, y, chart.x_label, chart.y_label);
   draw_paper(svg, x, y, [&](const Axis& across, const Axis& up) {
@@ -315,7 +328,7 @@ std::string line_chart(const Chart& chart) {
     for (size_t k = 0; k < chart.series.size(); ++k) draw_series(svg, across, up, chart, k);
   });
   if (chart.side_legend) {
-    draw_side_legend(svg, chart, {chart.width - right + 24, kTop + 4});
+    draw_side_legend(svg, chart, {chart.width - right + 16, kTop - 7});
   } else {
     draw_top_legend(svg, chart, chart.width - kRight, 2 * kLeft);
   }

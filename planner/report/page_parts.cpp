@@ -29,7 +29,7 @@ ViewScale scale_of(double largest) {
 
 /// "93.1 %"
 std::string percent(double share) {
-  return fixed(1e2 * share, 1) + "\u2009%";
+  return fixed(1e2 * share, 1) + "\u202f%";  // a narrow space that does not break
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ std::string space_view(const std::vector<ViewDrape>& drapes, const MapResult* ma
 
 ReportTable angles_table(const std::vector<ViewDrape>& drapes, const MapResult* mapping) {
   ReportTable table{
-      .title = "Shear and fibre angles",
+      .title = mapping != nullptr ? "Shear and fibre angles" : "Shear",
       .caption = "Share of the ply's area at the end. Shear: change of the angle between warp and weft.",
       .head = {"sequence"},
       .rows = {}};

@@ -83,7 +83,7 @@ int decimals_of(double step) {
 }
 
 double text_width(const std::string& text, double size) {
-  constexpr double kLetter = 0.59;  // mean width of a letter of DejaVu Sans, over its size
+  constexpr double kLetter = 0.56;  // mean width of a letter of wide fonts, over its size
   const auto letters = std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0u) !=
            0x80u;  // bytes that do not go on with a character of UTF-8

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "planner/report/svg.hpp"
 #include "planner/score/scoring.hpp"
 
 namespace drapeplan {
@@ -99,6 +100,13 @@ TEST(HtmlReport, WrinkledAreaIsAlsoAShareOfThePly) {
   EXPECT_FALSE(contains(html_report(report), "\u2009%"));
   report.ply_area = 0.04;
   EXPECT_TRUE(contains(html_report(report), "<td>100.0<small>25.0\u2009%</small></td>"));
+}
+
+TEST(HtmlReport, DarkPagesTurnTheInkOfPictures) {
+  const std::string page = html_report({});
+  EXPECT_TRUE(contains(page, "prefers-color-scheme: dark"));
+  for (const char* colour : {ink::kText, ink::kSoft, ink::kGrid, ink::kSurface})
+    EXPECT_TRUE(contains(page, std::string("=\"") + colour + "\"]")) << colour;
 }
 
 TEST(HtmlReport, OneRowHasNothingToStandOutFrom) {

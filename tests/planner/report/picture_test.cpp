@@ -224,6 +224,21 @@ TEST(SchedulePicture, ShowsStrokesInOrderOfArrival) {
   EXPECT_THROW(schedule_picture(two_grippers(), rig, ""), std::invalid_argument);
 }
 
+TEST(SchedulePicture, AGripperHasTheSameColourInTheChartOfHeights) {
+  RigOptions rig;
+  rig.columns = 2;
+  rig.rows = 1;
+  const std::string sequence = schedule_picture(two_grippers(), rig, "wave");
+  const Chart heights = height_chart(two_grippers(), rig, "wave");
+  ASSERT_EQ(heights.series.size(), 2u);
+  EXPECT_NE(*heights.series[0].shade, *heights.series[1].shade);
+  for (const ChartSeries& series : heights.series) {
+    const std::string colour = sequential_colour(*series.shade);
+    EXPECT_TRUE(contains(sequence, "fill=\"" + colour + "\"")) << series.name;
+    EXPECT_TRUE(contains(line_chart(heights), "stroke=\"" + colour + "\"")) << series.name;
+  }
+}
+
 TEST(SchedulePicture, GrippersThatNeverMoveAreDrawn) {
   RigOptions rig;
   rig.columns = 1;
