@@ -26,18 +26,22 @@ constexpr double kSteepest = 5.67;  // slope of 80 degrees: beyond it the surfac
 // side.
 constexpr double kFewestPlaces = 60, kMostPlaces = 400;
 
-// Of a vertex: between vertices facets tell planes from waves, but the fit must not follow their edges. With
-// a hundredth it does as soon as cells are smaller than facets.
+// Of a vertex, in cells with vertices in or beside them: facets then tell planes from waves, but the fit must
+// not follow their edges. Other cells have no better data than their facets: these count fully.
 constexpr double kFacetWeight = 1e-4;
 constexpr double kSmoothing =
     0.2;                           // of a cell: waves of four cells keep all but a thousandth of their height
 constexpr double kFirstCells = 2;  // cell over spacing of vertices
 constexpr int kFewestCells = 8;    // along the longer side
-constexpr int kMostCoefficients = 26000;  // some seconds of one core; the longest fit that a user waits for
+constexpr int kMostCoefficients = 16000;     // about a second of one core for the last fit
+constexpr double kCellGrowth = 1.05;         // towards cells that are not too many
+constexpr double kLeastShrinkage = 0.8;      // cells that are hardly smaller are not tried
 constexpr int kCoefficientsBeyondCells = 3;  // along one side of a cubic spline
 constexpr double kExact = 1e-6;           // [m] vertices that are met so well are met exactly
 constexpr double kWellBelowFacets = 0.05;
-constexpr double kWorthHalving = 0.5;  // halved cells must lower what is missed at least by this factor
+// Halved cells must lower what is missed at least so much: of vertices, and of facets, where an edge that is
+// rounded off gets half as wide.
+constexpr double kWorthHalving = 0.5, kWorthForFacets = 0.8;
 // What the user is told of: a tenth and a half of the smallest gap that drapes are usually judged by, 1 mm.
 constexpr double kMissedVertex = 1e-4, kMissedFacet = 5e-4;  // [m]
 
@@ -67,6 +71,12 @@ struct FaultPlaces {
       extreme = value;
     }
   }
+};
+
+// What a spline of so many cells is fitted to.
+struct CellSamples {
+  std::vector<FitPoint> points;
+  bool any_far = false;  ///< a cell has no vertex in it nor beside it
 };
 
 class SurfaceFitter {
@@ -153,6 +163,7 @@ class SurfaceFitter {
         const std::vector<double> heights = lines_.heights(place.x(), place.y(), kMerged * size_);
         layers(i, j) = int(heights.size());
         top(i, j) = heights.empty() ? 0 : heights.front();
+        if (!heights.empty()) facets_.push_back({{place.x(), place.y(), top(i, j)}, 1});
       }
     }
     FaultPlaces holes, folds, walls;
@@ -198,7 +209,7 @@ class SurfaceFitter {
           walls.extreme / kMillimetre, step / kMillimetre, place_text(walls.first), walls.count));
   }
 
-  /// Middles of the facets that are seen from above; their areas do not matter.
+  /// Middles of the facets that are seen from above, beside the places that were looked at.
   void find_facets() {
     for (const std::array<int, 3>& corners : triangles_.corners) {
       Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -211,22 +222,37 @@ class SurfaceFitter {
   void refine() {
     const Eigen::Vector2d size = result_.extent.upper - result_.extent.lower;
     double cell = std::min(kFirstCells * std::sqrt(vertex_area_), size.maxCoeff() / kFewestCells);
-    while (coefficients_for(cell) > kMostCoefficients) cell *= 2;
-    double missed = std::numeric_limits<double>::infinity();
-    while (coefficients_for(cell) <= kMostCoefficients) {
+    while (coefficients_for(cell) > kMostCoefficients) cell *= kCellGrowth;
+    for (bool first = true;; first = false) {
       const Eigen::Vector2i cells = cells_for(cell).cast<int>();
-      SplineShape spline = fit_spline(points_for(cells), result_.extent, cells, kSmoothing * cell);
+      const CellSamples samples = samples_for(cells);
+      SplineShape spline = fit_spline(samples.points, result_.extent, cells, kSmoothing * cell);
       const SplinePatches patches(spline);
       const Deviation vertices = deviation(patches, vertices_), facets = deviation(patches, facets_);
-      if (!(vertices.largest < missed)) return;
-      const bool worth = vertices.largest < kWorthHalving * missed;
-      result_.spline = std::move(spline);
-      result_.vertices = vertices;
-      result_.facets = facets;
-      missed = vertices.largest;
-      if (!worth || missed <= std::max(kExact, kWellBelowFacets * facets.largest)) return;
-      cell /= 2;
+      if (first || is_worth(vertices, facets)) {
+        result_.spline = std::move(spline);
+        result_.vertices = vertices;
+        result_.facets = facets;
+        if (are_met(vertices, facets) && (!samples.any_far || facets.largest <= kExact)) return;
+      } else if (!samples.any_far || result_.facets.largest <= kMissedFacet) {
+        return;
+      }
+      double next = cell / 2;
+      while (coefficients_for(next) > kMostCoefficients) next *= kCellGrowth;
+      if (next > kLeastShrinkage * cell) return;
+      cell = next;
     }
+  }
+
+  static bool are_met(const Deviation& vertices, const Deviation& facets) {
+    return vertices.largest <= std::max(kExact, kWellBelowFacets * facets.largest);
+  }
+
+  /// Whether smaller cells brought vertices nearer that were not met yet, or the middles of facets.
+  [[nodiscard]] bool is_worth(const Deviation& vertices, const Deviation& facets) const {
+    const Deviation &v = result_.vertices, &f = result_.facets;
+    return (!are_met(v, f) && vertices.largest < kWorthHalving * v.largest) ||
+           facets.largest < kWorthForFacets * f.largest;
   }
 
   /// Along x and y, of this size at most.
@@ -238,20 +264,28 @@ class SurfaceFitter {
     return (cells_for(cell).array() + (2 * kSplineMargin + kCoefficientsBeyondCells)).prod();
   }
 
-  /// The vertices, and with little weight the surface in the middle of every cell.
-  [[nodiscard]] std::vector<FitPoint> points_for(const Eigen::Vector2i& cells) const {
-    std::vector<FitPoint> points = vertices_;
-    const Eigen::Vector2d size =
-        (result_.extent.upper - result_.extent.lower).cwiseQuotient(cells.cast<double>());
+  /// The vertices, and the surface in the middle of every cell: with little weight where vertices are near.
+  [[nodiscard]] CellSamples samples_for(const Eigen::Vector2i& cells) const {
+    CellSamples samples{vertices_, false};
+    const Eigen::Vector2d lower = result_.extent.lower;
+    const Eigen::Vector2d size = (result_.extent.upper - lower).cwiseQuotient(cells.cast<double>());
+    Eigen::MatrixXi near = Eigen::MatrixXi::Zero(cells.x(), cells.y());
+    for (const FitPoint& vertex : vertices_) {
+      const Eigen::Vector2d at = (vertex.place.head<2>() - lower).cwiseQuotient(size);
+      const int i = std::clamp(int(at.x()), 0, cells.x() - 1), j = std::clamp(int(at.y()), 0, cells.y() - 1);
+      const int i0 = std::max(i - 1, 0), j0 = std::max(j - 1, 0);
+      near.block(i0, j0, std::min(i + 2, cells.x()) - i0, std::min(j + 2, cells.y()) - j0).setOnes();
+    }
     for (int i = 0; i < cells.x(); ++i) {
       for (int j = 0; j < cells.y(); ++j) {
-        const Eigen::Vector2d at =
-            result_.extent.lower + size.cwiseProduct(Eigen::Vector2d(i + 0.5, j + 0.5));
+        const Eigen::Vector2d at = lower + size.cwiseProduct(Eigen::Vector2d(i + 0.5, j + 0.5));
         const double top = lines_.top(at.x(), at.y());
-        if (std::isfinite(top)) points.push_back({{at.x(), at.y(), top}, kFacetWeight * size.prod()});
+        const double weight = near(i, j) != 0 ? kFacetWeight : 1;
+        if (std::isfinite(top)) samples.points.push_back({{at.x(), at.y(), top}, weight * size.prod()});
+        samples.any_far = samples.any_far || near(i, j) == 0;
       }
     }
-    return points;
+    return samples;
   }
 
   static Deviation deviation(const SplinePatches& patches, const std::vector<FitPoint>& points) {
@@ -280,7 +314,7 @@ class SurfaceFitter {
                       v.largest / kMillimetre, place_text(v.at)));
     if (f.largest > kMissedFacet)
       result_.warnings.push_back(
-          fmt::format("the middle of a facet is {:.2f} mm off the smooth surface at {}: an edge "
+          fmt::format("a facet is {:.2f} mm off the smooth surface at {}: an edge "
                       "there is rounded off, or the facets are coarse",
                       f.largest / kMillimetre, place_text(f.at)));
   }

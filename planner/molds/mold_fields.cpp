@@ -60,8 +60,17 @@ void visit_spline(FieldVisitor& v, MoldFields& m) {
            true});
 }
 
-void visit_file(FieldVisitor& v, MoldFields& m, const char* doc) {
-  v.field({"file", &m.file, doc, Dimension::none, {}, true});
+void visit_file(FieldVisitor& v, MoldFields& m) {
+  v.field({"file",
+           &m.file,
+           "Relative to the file that names it. `stl`: STL (text or binary), OBJ or PLY, one surface or a "
+           "solid, whose "
+           "upper side counts. `height_field`: a text table of columns x, y, z over a grid, a matrix with a "
+           "row of x and "
+           "a column of y, or an ESRI ASCII grid",
+           Dimension::none,
+           {},
+           true});
   v.field({"unit", &m.file_unit, "What 1 in the file stands for", Dimension::length, positive(1e3)});
   v.field({"rotate", &m.rotate, "Turns about x, then y, then z of the world, before it is moved",
            Dimension::angle});
@@ -128,18 +137,8 @@ void visit_mold(FieldVisitor& v, MoldFields& m) {
     v.field({"azimuth", &m.azimuth, "Direction of the axis, from +x towards +y", Dimension::angle});
   });
   alternative("spline", kSpline, [&] { visit_spline(v, m); });
-  alternative("stl", kTriangles, [&] {
-    visit_file(v, m,
-               "STL (text or binary), OBJ or PLY, relative to the file that names it: one surface, or a "
-               "solid, whose "
-               "upper side counts");
-  });
-  alternative("height_field", kHeightField, [&] {
-    visit_file(v, m,
-               "Text table, relative to the file that names it: columns x, y, z over a grid; a matrix with a "
-               "row of x "
-               "and a column of y; or an ESRI ASCII grid");
-  });
+  alternative("stl", kTriangles, [&] { visit_file(v, m); });
+  alternative("height_field", kHeightField, [&] { visit_file(v, m); });
 }
 
 std::vector<std::string> read_mold_of_file(MoldFields& m, double ply, FieldReader& reader) {

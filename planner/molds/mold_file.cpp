@@ -32,7 +32,7 @@ std::string fit_text(const std::string& name, size_t triangles, const MoldFile& 
   return fmt::format(
       "{}: {} triangles{}, {} vertices seen from above; a smooth surface of {} x {} coefficients misses them "
       "by {} at "
-      "most ({} r.m.s.) and the middles of facets by {} at most ({} r.m.s.)",
+      "most ({} r.m.s.) and the facets by {} at most ({} r.m.s.)",
       name, triangles, options.heights ? " of a grid" : "", s.vertices.places, s.spline.coefficients.rows(),
       s.spline.coefficients.cols(), length_text(s.vertices.largest), length_text(s.vertices.rms),
       length_text(s.facets.largest), length_text(s.facets.rms));

@@ -1,10 +1,8 @@
 #include "planner/molds/triangle_file.hpp"
 
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <string>
@@ -20,7 +18,8 @@ std::string ending_of(const std::filesystem::path& file) {
   return ending;
 }
 
-void append(const aiMesh& mesh, Triangles& triangles) {
+/// @return false if a face names a vertex that there is not.
+bool append(const aiMesh& mesh, Triangles& triangles) {
   const int first = int(triangles.vertices.size());
   for (unsigned k = 0; k < mesh.mNumVertices; ++k) {
     const aiVector3D& v = mesh.mVertices[k];
@@ -28,10 +27,14 @@ void append(const aiMesh& mesh, Triangles& triangles) {
   }
   for (unsigned k = 0; k < mesh.mNumFaces; ++k) {
     const aiFace& face = mesh.mFaces[k];
-    if (face.mNumIndices != 3) continue;  // points and lines
-    triangles.corners.push_back(
-        {first + int(face.mIndices[0]), first + int(face.mIndices[1]), first + int(face.mIndices[2])});
+    const auto corner = [&](unsigned index) { return first + int(face.mIndices[index]); };
+    for (unsigned index = 0; index < face.mNumIndices; ++index) {
+      if (face.mIndices[index] >= mesh.mNumVertices) return false;
+    }
+    for (unsigned index = 2; index < face.mNumIndices; ++index)  // none of points and lines
+      triangles.corners.push_back({corner(0), corner(index - 1), corner(index)});
   }
+  return true;
 }
 
 }  // namespace
@@ -47,13 +50,18 @@ TriangleReading read_triangles(const std::filesystem::path& file) {
     return fail("the ending of its name says what it is; expected .stl, .obj or .ply");
   const FileText content = read_file(file);
   if (!content.fault.empty()) return fail("cannot be read: " + content.fault);
-  // Read from memory: a file of triangles cannot make it open others, such as materials.
+  // Read from memory: a file of triangles cannot make it open others, such as materials. Nothing is done to
+  // the faces: steps that Assimp offers for it end the program where a damaged file has faces without
+  // corners.
   Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFileFromMemory(content.text.data(), content.text.size(),
-                                                     aiProcess_Triangulate, ending.c_str() + 1);
+  const aiScene* scene =
+      importer.ReadFileFromMemory(content.text.data(), content.text.size(), 0, ending.c_str() + 1);
   if (scene == nullptr)
     return fail(fmt::format("is no {} file: {}", ending, shown(importer.GetErrorString())));
-  for (unsigned k = 0; k < scene->mNumMeshes; ++k) append(*scene->mMeshes[k], reading.triangles);
+  for (unsigned k = 0; k < scene->mNumMeshes; ++k) {
+    if (!append(*scene->mMeshes[k], reading.triangles))
+      return fail("a face names a vertex that there is not");
+  }
   if (reading.triangles.corners.empty()) return fail("has no triangles");
   return reading;
 }

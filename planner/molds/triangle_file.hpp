@@ -14,8 +14,8 @@ struct TriangleReading {
   std::vector<InputError> errors;  ///< with the file
 };
 
-/// Reads all triangles of a file, whose ending says what it is; faces of more corners are split. Coordinates
-/// have single precision. Never throws for bad input.
+/// Reads all triangles of a file, whose ending says what it is; faces of more corners, which must be convex,
+/// are split. Coordinates have single precision. Never throws for bad input.
 TriangleReading read_triangles(const std::filesystem::path& file);
 
 }  // namespace drapeplan

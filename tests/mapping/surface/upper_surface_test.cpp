@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "mapping/net.hpp"
 #include "tests/mapping/molds.hpp"
@@ -67,11 +68,11 @@ TEST(UpperSurface, WhatTheFitMissesIsStatedAndFarBelowTheFacets) {
   ASSERT_TRUE(surface.faults.empty());
   EXPECT_TRUE(surface.warnings.empty());
   EXPECT_EQ(surface.vertices.places, 46 * 46);
-  EXPECT_EQ(surface.facets.places, 2 * 45 * 45);
+  EXPECT_GT(surface.facets.places, 2 * 45 * 45);
   EXPECT_LE(surface.vertices.largest, 3e-6);
   EXPECT_GT(surface.vertices.rms, 0);
-  // The height of arc of a facet of 10 mm with the curvature of the mold, 8 to 10 1/m.
-  EXPECT_NEAR(surface.facets.largest, 1.4e-4, 3e-5);
+  // The height of arc of a diagonal of 14 mm with the curvature of the mold, 8 to 10 1/m.
+  EXPECT_NEAR(surface.facets.largest, 1.8e-4, 4e-5);
 }
 
 TEST(UpperSurface, OfASolidItsUpperSideCounts) {
@@ -95,6 +96,37 @@ TEST(UpperSurface, LongTrianglesOfACylinderDoNotBulge) {
   for (double x = -0.5; x <= 0.5; x += 0.1) {
     for (double y = -0.45; y <= 0.45; y += 0.05) EXPECT_NEAR(mold.height(x, y), exact.height(x, y), 2e-4);
   }
+}
+
+/// A flat, a bend of 30 degrees, a slope, a bend back, a flat: as CAD exports it, 12 facets in each bend and
+/// one in all that is flat.
+TEST(UpperSurface, LongFacetsBesideTightBendsStayFlat) {
+  constexpr double kRadius = 0.1, kAngle = std::numbers::pi / 6, kFlat = 0.3;
+  constexpr int kBend = 12;
+  std::vector<Eigen::Vector2d> profile{{0, 0}};
+  for (int k = 0; k <= kBend; ++k) {
+    const double a = kAngle * k / kBend;
+    profile.emplace_back(kFlat + kRadius * std::sin(a), kRadius * (1 - std::cos(a)));
+  }
+  const Eigen::Vector2d end = profile.back() + 0.2 * Eigen::Vector2d(std::cos(kAngle), std::sin(kAngle));
+  const Eigen::Vector2d centre = end + kRadius * Eigen::Vector2d(std::sin(kAngle), -std::cos(kAngle));
+  for (int k = kBend; k >= 0; --k) {
+    const double a = kAngle * k / kBend;
+    profile.emplace_back(centre.x() - kRadius * std::sin(a), centre.y() + kRadius * std::cos(a));
+  }
+  profile.emplace_back(centre.x() + kFlat, centre.y() + kRadius);
+  Triangles mesh =
+      triangulated([](double, double) { return 0.0; }, {{0, 0}, {1, 1}}, int(profile.size()) - 1, 10);
+  for (size_t k = 0; k < mesh.vertices.size(); ++k) {
+    mesh.vertices[k].x() = profile[k / 11].x();
+    mesh.vertices[k].z() = profile[k / 11].y();
+  }
+  const UpperSurface surface = upper_surface(mesh, {});
+  ASSERT_TRUE(surface.faults.empty()) << surface.faults.front();
+  EXPECT_LE(surface.vertices.largest, 1e-5);
+  EXPECT_LE(surface.facets.largest, 4e-4);
+  const Mold mold(surface.spline, surface.extent);
+  for (double x = 0; x <= 0.25; x += 0.01) EXPECT_NEAR(mold.height(x, 0.47), 0, 1e-4) << x;
 }
 
 TEST(UpperSurface, AHoleIsNamedWithItsPlace) {

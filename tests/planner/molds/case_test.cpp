@@ -117,19 +117,20 @@ TEST(MoldOfAFile, FaultsNameTheFileAndThePlace) {
     if (!mold.contains("file")) mold["file"] = "mold.stl";
     return read_with(folder, mold);
   };
+  const auto square = [](const char* lower, const char* upper) {
+    return json::array({json::array({lower, upper}), json::array({lower, upper})});
+  };
   expect_error(with({{"file", "nowhere.stl"}}), "nowhere.stl: cannot be read");
   expect_error(with({{"unit", "1 um"}}), "is \"unit\", 0.001 mm, wrong?");
   expect_error(with({{"unit", "1 m"}}), "is \"unit\", 1000 mm, wrong?");
-  expect_error(with({{"extent", {{"0 mm", "500 mm"}, {"0 mm", "450 mm"}}}}),
-               "which is not all of the extent");
+  expect_error(with({{"extent", square("0 mm", "500 mm")}}), "which is not all of the extent");
   expect_error(with({{"angle", "3 deg"}}), "belongs to");
   Triangles hole = mesh;
   const int at = 2 * (20 * 30 + 10);  // the rectangle from x = 300 mm, y = 150 mm
   hole.corners.erase(hole.corners.begin() + at, hole.corners.begin() + at + 2);
   folder.write("hole.stl", binary_stl(hole));
   expect_error(with({{"file", "hole.stl"}}), "there is no surface at x = 30");
-  EXPECT_TRUE(
-      with({{"file", "mold.stl"}, {"extent", {{"5 mm", "445 mm"}, {"5 mm", "445 mm"}}}}).errors.empty());
+  EXPECT_TRUE(with({{"file", "mold.stl"}, {"extent", square("5 mm", "445 mm")}}).errors.empty());
   expect_error(read_with(folder, {{"shape", "stl"}}), "\"file\" is missing");
   expect_error(read_with(folder, {{"shape", "plane"}}), "\"extent\" is missing");
 }
