@@ -26,7 +26,10 @@ class DrapeView {
     return this.ready[k] ??= readDrape(this.data.drapes[k]);
   }
   get aspect() { return this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight); }
-  get time() { return this.drape.times.at(-1) * this.part("time").value / kSteps; }
+  get time() {
+    const { times } = this.drape, share = this.part("time").value / kSteps;
+    return times[0] + share * (times.at(-1) - times[0]);
+  }
 
   connect() {
     const { data, part, canvas } = this;
