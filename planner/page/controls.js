@@ -26,7 +26,10 @@ class DrapeView {
     return this.ready[k] ??= readDrape(this.data.drapes[k]);
   }
   get aspect() { return this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight); }
-  get time() { return this.drape.times.at(-1) * this.part("time").value / kSteps; }
+  get time() {
+    const { times } = this.drape, share = this.part("time").value / kSteps;
+    return times[0] + share * (times.at(-1) - times[0]);
+  }
 
   connect() {
     const { data, part, canvas } = this;
@@ -38,7 +41,8 @@ class DrapeView {
     });
     for (const [name, there] of [["mold", this.mold], ["rig", data.drapes[0].pads], ["boundary", data.boundary]])
       part(name).closest("label").hidden = !there;
-    part("lines").textContent = `Thin lines on the ply run along warp and weft, ${1e3 * data.spacing} mm apart.`;
+    const apart = Number((1e3 * data.spacing).toPrecision(3));
+    part("lines").textContent = `Thin lines on the ply run along warp and weft, ${apart} mm apart.`;
     for (const name of ["drape", "field"]) part(name).addEventListener("change", () => this.choose());
     for (const name of ["mold", "rig", "boundary"]) part(name).addEventListener("change", () => this.draw());
     part("time").addEventListener("input", () => { this.stop(); this.draw(); });

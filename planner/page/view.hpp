@@ -33,9 +33,15 @@ struct View {
 
 /// HTML of the view: ply, mold, grippers and interlinks at the time of a slider, coloured by the gap to the
 /// mold, the shear angle, or the angle between the fibres and those of the mapped net; with script and data,
-/// nothing is loaded from elsewhere. It is hidden without scripts, without WebGL 2, and in print. Data:
-/// numbers in 16 bits between limits, base64; frames are left out evenly where the text would be longer than
-/// 6 MB. Empty without a frame whose nodes are finite.
+/// nothing is loaded from elsewhere. It is hidden without scripts, without WebGL 2, and in print.
+///
+/// Data, as JSON: `drapes` (each with its name, `times` [s], `quads` and `outline` of nodes, `rest` [m], and
+/// of all frames, one after the other, `position`, `pads`, `joints` [m] and the `fields`), `fields` (name,
+/// unit, bands of the scale), `mold` (a grid of points [m]), `boundary` [m], `links` (pairs of grippers),
+/// `pad_radius` [m], `spacing` of the lines on the ply [m], and the `box` that is seen at first [m]. Long
+/// lists are base64 of 16-bit numbers between limits. Frames are left out evenly where the text would be
+/// longer than 6 MB.
+/// @returns empty without a frame that has finite nodes.
 std::string view_markup(const View& view);
 
 }  // namespace drapeplan
