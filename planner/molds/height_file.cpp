@@ -246,7 +246,7 @@ Grid grid_of_points(const std::vector<Line>& lines) {
     throw Fault{
         lines[first].number,
         fmt::format("{} points have {} different x and {} different y: they lie on no rectangular grid. Make "
-                    "triangles of scattered points (STL, OBJ, PLY)",
+                    "triangles of scattered points (STL, OBJ)",
                     x.size(), grid.x.size(), grid.y.size())};
   grid.z = Eigen::MatrixXd::Constant(int(grid.x.size()), int(grid.y.size()), kNaN);
   for (size_t k = 0; k < x.size(); ++k) {

@@ -63,7 +63,7 @@ void visit_spline(FieldVisitor& v, MoldFields& m) {
 void visit_file(FieldVisitor& v, MoldFields& m) {
   v.field({"file",
            &m.file,
-           "Relative to the file that names it. `stl`: STL (text or binary), OBJ or PLY, one surface or a "
+           "Relative to the file that names it. `stl`: STL (text or binary) or OBJ, one surface or a "
            "solid, whose "
            "upper side counts. `height_field`: a text table of columns x, y, z over a grid, a matrix with a "
            "row of x and "

@@ -46,13 +46,13 @@ TriangleReading read_triangles(const std::filesystem::path& file) {
     return reading;
   };
   const std::string ending = ending_of(file);
-  if (ending != ".stl" && ending != ".obj" && ending != ".ply")
-    return fail("the ending of its name says what it is; expected .stl, .obj or .ply");
+  if (ending != ".stl" && ending != ".obj")
+    return fail("the ending of its name says what it is; expected .stl or .obj");
   const FileText content = read_file(file);
   if (!content.fault.empty()) return fail("cannot be read: " + content.fault);
-  // Read from memory: a file of triangles cannot make it open others, such as materials. Nothing is done to
-  // the faces: steps that Assimp offers for it end the program where a damaged file has faces without
-  // corners.
+  // PLY is not offered: Assimp's reader of it may not end where a file is damaged. Read from memory: a file
+  // of triangles cannot make it open others, such as materials. Nothing is done to the faces: steps that
+  // Assimp offers for it end the program where a damaged file has faces without corners.
   Assimp::Importer importer;
   const aiScene* scene =
       importer.ReadFileFromMemory(content.text.data(), content.text.size(), 0, ending.c_str() + 1);

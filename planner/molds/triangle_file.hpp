@@ -1,4 +1,4 @@
-// Triangles from files of CAD programs: STL (text and binary), OBJ and PLY.
+// Triangles from files of CAD programs: STL (text and binary) and OBJ.
 #pragma once
 
 #include <filesystem>

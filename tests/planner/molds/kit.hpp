@@ -73,16 +73,6 @@ inline std::string obj(const Triangles& mesh) {
   return text;
 }
 
-inline std::string ply(const Triangles& mesh) {
-  std::string text = fmt::format(
-      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
-      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      mesh.vertices.size(), mesh.corners.size());
-  for (const auto& v : mesh.vertices) text += fmt::format("{:.9g} {:.9g} {:.9g}\n", v.x(), v.y(), v.z());
-  for (const auto& c : mesh.corners) text += fmt::format("3 {} {} {}\n", c[0], c[1], c[2]);
-  return text;
-}
-
 /// Rows x, y, z of the vertices.
 inline std::string points_csv(const Triangles& mesh) {
   std::string text = "x,y,z\n";
