@@ -104,7 +104,7 @@ expect 2 plan "$source/cases/elastica.json" "$quick" --out "$work/batch" "${few[
 grep -qF 'needs the section "grippers"' "$work/stderr" || fail "the wrong case is not named"
 grep -q 'of 2 drapes are accepted, 1 wrong input' "$work/stdout" || fail "no summary: $(tail -5 "$work/stdout")"
 same "$(cut -d, -f3 "$work/batch/summary.csv" | tr '\n' ' ')" 'status wrong input not accepted ' "summary.csv"
-grep -qF 'href="flexdraper-quick/report.html"' "$work/batch/summary.html" || fail "summary.html leads nowhere"
+grep -qF 'href="./flexdraper-quick/report.html"' "$work/batch/summary.html" || fail "summary.html leads nowhere"
 expect 2 plan "$quick" "$source/cases/elastica.json" --json --out "$work/batch" "${few[@]}" --resume
 same "$(value "$work/stdout" /cases/1/status)" 'wrong input' "status of a wrong case"
 refuse '/grippers/spacing: "150 mm": gripper [3, 3] is off the ply' plan "$quick" --set 'grippers.spacing=150 mm'
