@@ -5,7 +5,7 @@
 
 #include "planner/cli/cli.hpp"
 #include "planner/drape/map_result.hpp"
-#include "planner/report/vtu.hpp"
+#include "planner/exports/mapped_files.hpp"
 
 namespace drapeplan {
 namespace {
@@ -66,7 +66,7 @@ int map(const MapOptions& options) {
   const MapResult result = map_case(definition);
   print_warnings(map_warnings(definition, result), options.common);
   begin_output(out, options.common);
-  if (!options.common.out.empty()) write_net(options.common.out, result.net);
+  if (!options.common.out.empty()) write_mapping(out.path(), result, definition.grippers);
   deliver(result_json(definition, result), result_text(definition, result), options.common, &definition);
   return kDone;
 }
