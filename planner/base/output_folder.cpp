@@ -92,6 +92,8 @@ bool is_result_name(std::string_view name) {
                                      "material.json",
                                      "characterisation.html",
                                      "net.csv",
+                                     "fibres.csv",
+                                     "fibres.csv-metadata.json",
                                      "probes.csv",
                                      "grips.csv",
                                      "design.json"};

@@ -14,7 +14,7 @@
 #include "planner/drape/problem.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/drape/run_checks.hpp"
-#include "planner/exports/run_frames.hpp"
+#include "planner/exports/run_exports.hpp"
 #include "planner/report/run_files.hpp"
 #include "planner/schedule/check.hpp"
 #include "planner/schedule/file.hpp"
@@ -168,11 +168,8 @@ int simulate_free(const Case& definition, const SimulateOptions& options) {
              if (files) {
                DrapePage page;
                page.frames = &frames;
-               page.files = write_frames(out.path(), "ply", {.scene = &model.scene(), .frames = &frames});
-               if (definition.mold) {
-                 const NamedFiles still = write_surroundings(out.path(), *definition.mold, nullptr);
-                 page.files.insert(page.files.end(), still.begin(), still.end());
-               }
+               page.files = write_exports(out.path(), "ply", definition,
+                                          {.scene = &model.scene(), .frames = &frames}, run);
                write_run(options.common.out, definition, model, recorder, run, std::move(page));
              }
              deliver(result, text, options.common, &definition);
@@ -230,12 +227,12 @@ void write_drape(const std::filesystem::path& folder, const DrapeProblem& proble
   NamedFiles files{{"schedule.json", "the sequence, knots"}};
   const auto list = [&files](const NamedFiles& more) { files.insert(files.end(), more.begin(), more.end()); };
   list(robot_files());
-  list(write_frames(folder, "ply",
-                    {.scene = &model.scene(),
-                     .frames = &drape.frames,
-                     .schedule = &schedule,
-                     .mapping = &problem.mapping()}));
-  list(write_surroundings(folder, *definition.mold, &problem.mapping()));
+  list(write_exports(folder, "ply", definition,
+                     {.scene = &model.scene(),
+                      .frames = &drape.frames,
+                      .schedule = &schedule,
+                      .mapping = &problem.mapping()},
+                     drape.run));
   const std::string picture = drape_picture({drape_panel(problem, drape, options.fidelity, options.schedule)},
                                             definition.mold->extent());
   write_text(folder / "drape.svg", picture);

@@ -14,7 +14,7 @@
 #include "planner/drape/acceptance.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/drape/run_checks.hpp"
-#include "planner/exports/run_frames.hpp"
+#include "planner/exports/run_exports.hpp"
 #include "planner/page/page.hpp"
 #include "planner/report/charts.hpp"
 #include "planner/report/page_parts.hpp"
@@ -353,21 +353,19 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
   write_schedule(folder / "schedule_wave.json", search.wave.schedule, rig);
 
   std::vector<DrapePanel> panels;
-  NamedFiles others;  // of the last one that is added
   const auto add = [&](const char* name, const Drape& drape, const std::string& fidelity,
                        const Schedule& schedule) {
-    others = write_frames(folder, name,
-                          {.scene = &problem.model(fidelity).scene(),
-                           .frames = &drape.frames,
-                           .schedule = &schedule,
-                           .mapping = &problem.mapping()});
     panels.push_back(drape_panel(problem, drape, fidelity, name));
+    return RunFrames{.scene = &problem.model(fidelity).scene(),
+                     .frames = &drape.frames,
+                     .schedule = &schedule,
+                     .mapping = &problem.mapping()};
   };
-  add("uniform", result.uniform, kReport, search.uniform.schedule);
-  add("wave", result.wave, kReport, search.wave.schedule);
-  add("optimised", result.best, search.best_fidelity, search.best.schedule);
-  const NamedFiles still = write_surroundings(folder, *problem.definition().mold, &problem.mapping());
-  others.insert(others.end(), still.begin(), still.end());
+  write_frames(folder, "uniform", add("uniform", result.uniform, kReport, search.uniform.schedule));
+  write_frames(folder, "wave", add("wave", result.wave, kReport, search.wave.schedule));
+  const NamedFiles others = write_exports(
+      folder, "optimised", problem.definition(),
+      add("optimised", result.best, search.best_fidelity, search.best.schedule), result.best.run);
 
   const std::string drape = drape_picture(panels, problem.definition().mold->extent());
   const std::string sequence = schedule_picture(search.best.schedule, rig, "Optimised sequence");
