@@ -14,6 +14,7 @@
 #include "planner/drape/acceptance.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/drape/run_checks.hpp"
+#include "planner/exports/pattern.hpp"
 #include "planner/exports/run_exports.hpp"
 #include "planner/page/page.hpp"
 #include "planner/report/charts.hpp"
@@ -363,9 +364,11 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
   };
   write_frames(folder, "uniform", add("uniform", result.uniform, kReport, search.uniform.schedule));
   write_frames(folder, "wave", add("wave", result.wave, kReport, search.wave.schedule));
-  const NamedFiles others = write_exports(
-      folder, "optimised", problem.definition(),
-      add("optimised", result.best, search.best_fidelity, search.best.schedule), result.best.run);
+  NamedFiles others = write_exports(folder, "optimised", problem.definition(),
+                                    add("optimised", result.best, search.best_fidelity, search.best.schedule),
+                                    result.best.run);
+  const NamedFiles pattern = write_pattern(folder, problem.definition());
+  others.insert(others.end(), pattern.begin(), pattern.end());
 
   const std::string drape = drape_picture(panels, problem.definition().mold->extent());
   const std::string sequence = schedule_picture(search.best.schedule, rig, "Optimised sequence");
