@@ -92,6 +92,9 @@ bool is_result_name(std::string_view name) {
                                      "material.json",
                                      "characterisation.html",
                                      "net.csv",
+                                     "pattern.dxf",
+                                     "fibres.csv",
+                                     "fibres.csv-metadata.json",
                                      "probes.csv",
                                      "grips.csv",
                                      "design.json"};

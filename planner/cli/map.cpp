@@ -5,7 +5,8 @@
 
 #include "planner/cli/cli.hpp"
 #include "planner/drape/map_result.hpp"
-#include "planner/report/vtu.hpp"
+#include "planner/exports/mapped_files.hpp"
+#include "planner/exports/pattern.hpp"
 
 namespace drapeplan {
 namespace {
@@ -66,7 +67,10 @@ int map(const MapOptions& options) {
   const MapResult result = map_case(definition);
   print_warnings(map_warnings(definition, result), options.common);
   begin_output(out, options.common);
-  if (!options.common.out.empty()) write_net(options.common.out, result.net);
+  if (!options.common.out.empty()) {
+    write_mapping(out.path(), result, definition.grippers);
+    write_pattern(out.path(), definition);
+  }
   deliver(result_json(definition, result), result_text(definition, result), options.common, &definition);
   return kDone;
 }

@@ -11,6 +11,7 @@
 #include "planner/drape/map_result.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/drape/result_fields.hpp"
+#include "planner/exports/mapped_files.hpp"
 #include "planner/reach/reach.hpp"
 
 namespace drapeplan {
@@ -143,6 +144,7 @@ int reach(const ReachOptions& options) {
   begin_output(out, options.common);
   json document = result_json(problem, result);
   add_floors(floors, document);
+  if (!options.common.out.empty()) write_reach(out.path(), problem, result);
   deliver(document, result_text(problem, result) + floors_text(floors), options.common, &definition);
   if (!result.converged) throw NotFinished("not converged: " + result.status);
   return kDone;

@@ -14,8 +14,8 @@
 #include "planner/drape/problem.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/drape/run_checks.hpp"
+#include "planner/exports/run_exports.hpp"
 #include "planner/report/run_files.hpp"
-#include "planner/report/vtu.hpp"
 #include "planner/schedule/check.hpp"
 #include "planner/schedule/file.hpp"
 #include "planner/schedule/motion.hpp"
@@ -166,10 +166,10 @@ int simulate_free(const Case& definition, const SimulateOptions& options) {
   keep_all([&] { save(options, model, run.state, nullptr); },
            [&] {
              if (files) {
-               write_frames(options.common.out, "ply", model.scene().mesh, frames,
-                            definition.mold ? &*definition.mold : nullptr, definition.material.thickness);
                DrapePage page;
                page.frames = &frames;
+               page.files = write_exports(out.path(), "ply", definition,
+                                          {.scene = &model.scene(), .frames = &frames}, run);
                write_run(options.common.out, definition, model, recorder, run, std::move(page));
              }
              deliver(result, text, options.common, &definition);
@@ -224,9 +224,15 @@ void write_drape(const std::filesystem::path& folder, const DrapeProblem& proble
                  const std::string& verdict, const Diagnosis& diagnosis) {
   const Case& definition = problem.definition();
   const Model& model = problem.model(options.fidelity);
-  write_frames(folder, "ply", model.scene().mesh, drape.frames, &*definition.mold,
-               definition.material.thickness);
-  write_mold_vtu(folder / "mold.vtu", *definition.mold);
+  NamedFiles files{{"schedule.json", "the sequence, knots"}};
+  const auto list = [&files](const NamedFiles& more) { files.insert(files.end(), more.begin(), more.end()); };
+  list(robot_files());
+  list(write_exports(folder, "ply", definition,
+                     {.scene = &model.scene(),
+                      .frames = &drape.frames,
+                      .schedule = &schedule,
+                      .mapping = &problem.mapping()},
+                     drape.run));
   const std::string picture = drape_picture({drape_panel(problem, drape, options.fidelity, options.schedule)},
                                             definition.mold->extent());
   write_text(folder / "drape.svg", picture);
@@ -244,8 +250,7 @@ void write_drape(const std::filesystem::path& folder, const DrapeProblem& proble
       .reasons = {},
       .rows = reference_rows(definition),
       .figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", picture}},
-      .files = {{"schedule.json", "the sequence, knots"}, {"mold.vtu", "the mold, for ParaView"}}};
-  page.files.insert(page.files.begin() + 1, robot_files().begin(), robot_files().end());
+      .files = std::move(files)};
   const std::vector<ReportRow> own = drape_rows(options.schedule, drape);
   page.rows.insert(page.rows.end(), own.begin(), own.end());
   if (!diagnosis.good()) page.reasons = reasons_report(problem, drape, options.fidelity, diagnosis);

@@ -14,26 +14,6 @@ using Eigen::Vector3d;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Derivatives of the place with respect to u and v: directions of warp and weft.
-struct Fibres {
-  Vector3d warp{0, 0, 0}, weft{0, 0, 0};
-};
-
-/// In the middle of an element, whatever its shape in the flat ply.
-Fibres fibres_of(const Mesh& mesh, const std::array<int, 4>& quad, const std::vector<Vector3d>& position) {
-  // Bilinear shape functions at the middle: +-1/4 along either edge of the reference square.
-  constexpr std::array<double, 4> kXi{-0.25, 0.25, 0.25, -0.25}, kEta{-0.25, -0.25, 0.25, 0.25};
-  Eigen::Matrix2d rest = Eigen::Matrix2d::Zero();
-  Eigen::Matrix<double, 3, 2> place = Eigen::Matrix<double, 3, 2>::Zero();
-  for (size_t k = 0; k < 4; ++k) {
-    const Eigen::RowVector2d slope(kXi[k], kEta[k]);
-    rest += mesh.rest[size_t(quad[k])] * slope;
-    place += position[size_t(quad[k])] * slope;
-  }
-  const Eigen::Matrix<double, 3, 2> gradient = place * rest.inverse();
-  return {gradient.col(0), gradient.col(1)};
-}
-
 /// The cell of a line's places that holds a value; nothing beside the line.
 std::optional<size_t> cell_of(const std::vector<double>& places, double value) {
   if (places.size() < 2 || !(value >= places.front() && value <= places.back())) return {};
@@ -65,6 +45,21 @@ double rest_area(const Mesh& mesh, const std::array<int, 4>& quad) {
 
 }  // namespace
 
+Fibres element_fibres(const Mesh& mesh, const std::array<int, 4>& quad,
+                      const std::vector<Vector3d>& position) {
+  // Bilinear shape functions at the middle: +-1/4 along either edge of the reference square.
+  constexpr std::array<double, 4> kXi{-0.25, 0.25, 0.25, -0.25}, kEta{-0.25, -0.25, 0.25, 0.25};
+  Eigen::Matrix2d rest = Eigen::Matrix2d::Zero();
+  Eigen::Matrix<double, 3, 2> place = Eigen::Matrix<double, 3, 2>::Zero();
+  for (size_t k = 0; k < 4; ++k) {
+    const Eigen::RowVector2d slope(kXi[k], kEta[k]);
+    rest += mesh.rest[size_t(quad[k])] * slope;
+    place += position[size_t(quad[k])] * slope;
+  }
+  const Eigen::Matrix<double, 3, 2> gradient = place * rest.inverse();
+  return {gradient.col(0), gradient.col(1)};
+}
+
 std::vector<double> nodal_means(const Mesh& mesh, const std::vector<double>& values) {
   std::vector<double> sums(mesh.rest.size(), 0.0), counts(mesh.rest.size(), 0.0);
   for (size_t e = 0; e < values.size(); ++e) {
@@ -89,7 +84,7 @@ std::vector<double> fibre_angle_offsets(const Mesh& mesh, const std::vector<Vect
       offsets.push_back(kNaN);
       continue;
     }
-    const Fibres draped = fibres_of(mesh, quad, position);
+    const Fibres draped = element_fibres(mesh, quad, position);
     const Vector3d normal = mapped->warp.cross(mapped->weft).normalized();
     const auto offset = [&](const Vector3d& fibre, const Vector3d& wanted) {
       return angle_between(fibre - normal * normal.dot(fibre), wanted);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "fem/mesh/mesh.hpp"
@@ -12,6 +13,17 @@ namespace drapeplan {
 /// Mean of the elements around each node; values that are not finite do not count. NaN where none does.
 /// @param values  one per element.
 std::vector<double> nodal_means(const Mesh& mesh, const std::vector<double>& values);
+
+/// Derivatives of the place with respect to u and v: along warp and weft, as long as these fibres are
+/// stretched [-].
+struct Fibres {
+  Eigen::Vector3d warp{0, 0, 0}, weft{0, 0, 0};
+};
+
+/// In the middle of an element, the mean of its four nodes, whatever its shape in the flat ply.
+/// @param position  of the nodes [m].
+Fibres element_fibres(const Mesh& mesh, const std::array<int, 4>& quad,
+                      const std::vector<Eigen::Vector3d>& position);
 
 /// Angle in the middle of each element between its fibres and those of the mapped net at the same place of
 /// the ply, seen along the net's normal: the larger one of warp and weft, in [0, pi] [rad]; NaN beside the

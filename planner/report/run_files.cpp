@@ -14,10 +14,11 @@
 #include "planner/drape/acceptance.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/drape/run_checks.hpp"
+#include "planner/exports/pattern.hpp"
+#include "planner/exports/run_exports.hpp"
 #include "planner/page/page.hpp"
 #include "planner/report/charts.hpp"
 #include "planner/report/page_parts.hpp"
-#include "planner/report/vtu.hpp"
 #include "planner/schedule/file.hpp"
 #include "planner/score/scoring.hpp"
 #include "planner/search/finalists.hpp"
@@ -280,9 +281,10 @@ std::vector<ViewDrape> viewed(const DrapeProblem& problem, const PlanResult& res
           {"optimised", &problem.model(result.search.best_fidelity).scene(), &result.best.frames}};
 }
 
-/// The page of a plan. @param drape, sequence  pictures, as SVG.
+/// The page of a plan. @param drape, sequence  pictures, as SVG. @param others  files for other programs.
 PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,
-                   const Diagnosis& diagnosis, const std::string& drape, const std::string& sequence) {
+                   const Diagnosis& diagnosis, const std::string& drape, const std::string& sequence,
+                   const NamedFiles& others) {
   const RigOptions& rig = *problem.definition().grippers;
   const StagedResult& search = result.search;
   PlanReport report;
@@ -327,9 +329,8 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   report.files = {{"schedule.json", "the optimised sequence, knots"},
                   {"result.json", "all results"},
                   {"resolved.json", "the complete case with all defaults"},
-                  {"evaluations.jsonl", "every evaluation"},
-                  {"optimised.pvd", "the optimised drape over time, for ParaView"},
-                  {"mold.vtu", "the mold, for ParaView"}};
+                  {"evaluations.jsonl", "every evaluation"}};
+  report.files.insert(report.files.end(), others.begin(), others.end());
   report.files.insert(report.files.begin() + 1, robot_files().begin(), robot_files().end());
   if (result.design) {
     report.files.emplace_back(kDesignFile, "the case with what was changed of the rig; it runs on its own");
@@ -353,15 +354,21 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
   write_schedule(folder / "schedule_wave.json", search.wave.schedule, rig);
 
   std::vector<DrapePanel> panels;
-  const auto add = [&](const char* name, const Drape& drape, const std::string& fidelity) {
-    write_frames(folder, name, problem.model(fidelity).scene().mesh, drape.frames,
-                 &*problem.definition().mold, problem.definition().material.thickness);
+  const auto add = [&](const char* name, const Drape& drape, const std::string& fidelity,
+                       const Schedule& schedule) {
     panels.push_back(drape_panel(problem, drape, fidelity, name));
+    return RunFrames{.scene = &problem.model(fidelity).scene(),
+                     .frames = &drape.frames,
+                     .schedule = &schedule,
+                     .mapping = &problem.mapping()};
   };
-  add("uniform", result.uniform, kReport);
-  add("wave", result.wave, kReport);
-  add("optimised", result.best, search.best_fidelity);
-  write_mold_vtu(folder / "mold.vtu", *problem.definition().mold);
+  write_frames(folder, "uniform", add("uniform", result.uniform, kReport, search.uniform.schedule));
+  write_frames(folder, "wave", add("wave", result.wave, kReport, search.wave.schedule));
+  NamedFiles others = write_exports(folder, "optimised", problem.definition(),
+                                    add("optimised", result.best, search.best_fidelity, search.best.schedule),
+                                    result.best.run);
+  const NamedFiles pattern = write_pattern(folder, problem.definition());
+  others.insert(others.end(), pattern.begin(), pattern.end());
 
   const std::string drape = drape_picture(panels, problem.definition().mold->extent());
   const std::string sequence = schedule_picture(search.best.schedule, rig, "Optimised sequence");
@@ -370,7 +377,7 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
   if (result.design)
     write_text(folder / kDesignFile, dump_json(resolved_case(problem.definition()), 2) + "\n");
   write_text(folder / "report.html",
-             html_report(page_of(problem, result, trust, diagnosis, drape, sequence)));
+             html_report(page_of(problem, result, trust, diagnosis, drape, sequence, others)));
 }
 
 std::string comparison_table(const DrapeProblem& problem, const PlanResult& result) {

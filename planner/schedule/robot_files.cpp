@@ -4,19 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "planner/base/json_text.hpp"
 #include "planner/base/text.hpp"
 #include "planner/schedule/file.hpp"
+#include "planner/tables/csv_metadata.hpp"
 
 namespace drapeplan {
 namespace {
 
 constexpr int kMicro = 6, kNano = 9;  // decimals of metres and seconds
 constexpr const char* kLongFile = "schedule.csv";
-constexpr const char* kMetadataFile = "schedule.csv-metadata.json";
 constexpr const char* kWideFile = "schedule_wide.csv";
 constexpr const char* kRos2File = "schedule_ros2.yaml";
 
@@ -189,25 +187,17 @@ void write_metadata(const std::filesystem::path& file, const Schedule& schedule,
   std::vector<MotionColumn> columns{MotionColumn::gripper_i, MotionColumn::gripper_j, MotionColumn::time};
   const std::vector<MotionColumn> own = columns_of(schedule, false);
   columns.insert(columns.end(), own.begin(), own.end());
-  nlohmann::json described = nlohmann::json::array();
+  CsvTable table{.file = kLongFile,
+                 .case_name = options.case_name,
+                 .case_hash = options.case_hash,
+                 .description = head(schedule, rig, options),
+                 .columns = {},
+                 .key = {"gripper_i", "gripper_j", column_name(MotionColumn::time)}};
   for (const MotionColumn column : columns) {
     const bool whole = *words_of(column).unit == '\0';
-    described.push_back({{"name", column_name(column)},
-                         {"titles", column_name(column)},
-                         {"datatype", whole ? "integer" : "decimal"},
-                         {"dc:description", words_of(column).doc}});
+    table.columns.push_back({column_name(column), whole ? "integer" : "decimal", words_of(column).doc});
   }
-  const nlohmann::json document{
-      {"@context", "http://www.w3.org/ns/csvw"},
-      {"url", kLongFile},
-      {"dc:title", clean_text(options.case_name)},
-      {"dc:identifier", options.case_hash},
-      {"dc:creator", fmt::format("drapeplan {}", DRAPEPLAN_VERSION)},
-      {"dc:description", head(schedule, rig, options)},
-      {"tableSchema",
-       {{"columns", described},
-        {"primaryKey", {"gripper_i", "gripper_j", column_name(MotionColumn::time)}}}}};
-  write_text(file, dump_json(document, 2) + "\n");
+  write_text(file, metadata_text(table));
 }
 
 }  // namespace
@@ -291,7 +281,7 @@ void write_schedule_ros2(const std::filesystem::path& file, const Schedule& sche
 std::vector<std::string> write_robot_files(const std::filesystem::path& folder, const Schedule& schedule,
                                            const RigOptions& rig, const RobotFileOptions& options) {
   write_schedule_csv(folder / kLongFile, schedule, rig, options.cycle);
-  write_metadata(folder / kMetadataFile, schedule, rig, options);
+  write_metadata(folder / metadata_name(kLongFile), schedule, rig, options);
   write_schedule_wide(folder / kWideFile, schedule, rig, options);
   std::vector<std::string> refusals = rig_refusals(schedule, rig, options.kind);
   if (refusals.empty()) write_schedule_ros2(folder / kRos2File, schedule, rig, options);
@@ -301,7 +291,7 @@ std::vector<std::string> write_robot_files(const std::filesystem::path& folder, 
 const std::vector<std::pair<std::string, std::string>>& robot_files() {
   static const std::vector<std::pair<std::string, std::string>> files{
       {kLongFile, "the same, sampled for a robot controller: a row per gripper and cycle"},
-      {kMetadataFile, "what the columns of schedule.csv mean, for programs (CSV on the Web)"},
+      {metadata_name(kLongFile), "what the columns of schedule.csv mean, for programs (CSV on the Web)"},
       {kWideFile, "the same, a row per cycle"},
       {kRos2File, "the same as a ROS 2 JointTrajectory, if the rig can follow it"}};
   return files;

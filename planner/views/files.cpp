@@ -200,8 +200,7 @@ class Page {
         {"state hash", hex(summary.state_hash)}};
     page_.files = std::move(drape.files);
     page_.files.insert(page_.files.end(), {{"result.json", "all results"},
-                                           {"resolved.json", "the complete case with all defaults"},
-                                           {"ply.pvd", "the ply over time, for ParaView"}});
+                                           {"resolved.json", "the complete case with all defaults"}});
   }
   void table(const std::string& name, const std::string& text, const std::string& what) {
     write_text(folder_ / name, text);

@@ -101,9 +101,9 @@ TEST_F(OutputFolderTest, AKilledOwnerFreesTheFolder) {
 
 TEST_F(OutputFolderTest, SetsAsideResultsOfAnEarlierRunAndNothingElse) {
   OutputFolder(run_, "simulate").begin();
-  for (const char* name :
-       {"result.json", "ply_020.vtu", "ply.pvd", "schedule.csv.partial", "schedule.csv-metadata.json",
-        "schedule_wide.csv", "schedule_ros2.yaml", "evaluations.jsonl"})
+  for (const char* name : {"result.json", "ply_020.vtu", "ply.pvd", "schedule.csv.partial",
+                           "schedule.csv-metadata.json", "schedule_wide.csv", "schedule_ros2.yaml",
+                           "pattern.dxf", "fibres.csv", "fibres.csv-metadata.json", "evaluations.jsonl"})
     write_text(run_ / name, "first");
   write_text(run_ / "notes.txt", "mine");
   {
@@ -112,8 +112,9 @@ TEST_F(OutputFolderTest, SetsAsideResultsOfAnEarlierRunAndNothingElse) {
     EXPECT_EQ(second.begin({"evaluations.jsonl"}), run_ / "earlier-1");
   }
   EXPECT_FALSE(fs::exists(run_ / "result.json"));
-  for (const char* name : {"result.json", "ply_020.vtu", "ply.pvd", "schedule.csv.partial",
-                           "schedule.csv-metadata.json", "schedule_wide.csv", "schedule_ros2.yaml"})
+  for (const char* name :
+       {"result.json", "ply_020.vtu", "ply.pvd", "schedule.csv.partial", "schedule.csv-metadata.json",
+        "schedule_wide.csv", "schedule_ros2.yaml", "pattern.dxf", "fibres.csv", "fibres.csv-metadata.json"})
     EXPECT_EQ(text_of(run_ / "earlier-1" / name), "first") << name;
   EXPECT_EQ(text_of(run_ / "notes.txt"), "mine");
   EXPECT_EQ(text_of(run_ / "evaluations.jsonl"), "first");

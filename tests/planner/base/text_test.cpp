@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <limits>
 #include <random>
 
 namespace drapeplan {
@@ -40,6 +42,15 @@ TEST(Text, AnyBytesBecomeValidMarkup) {
     EXPECT_EQ(clean_text(markup), markup);
     EXPECT_EQ(markup.find_first_of("<>\"'"), std::string::npos);
   }
+}
+
+TEST(Text, NumbersReadBackAndEscapesAreComplete) {
+  for (const double value : {0.1, -0.0, 1e-320, 1e308, 1.0 / 3})
+    EXPECT_EQ(std::strtod(exact(value).c_str(), nullptr), value);
+  EXPECT_EQ(fixed(-0.001, 2), "0.00");
+  EXPECT_EQ(fixed(-1.005, 1), "-1.0");
+  EXPECT_EQ(fixed(std::numeric_limits<double>::quiet_NaN(), 1), "\u2013");
+  EXPECT_EQ(escape_markup("<a href=\"x\">'&\x01"), "&lt;a href=&quot;x&quot;&gt;&#39;&amp;\uFFFD");
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ done
 same "$(value "$work/one/result.json" /history)" "$(value "$work/two/result.json" /history)" "history"
 
 # What a run directory holds, and what the result says.
-for file in resolved.json result.json evaluations.jsonl schedule.json schedule.csv schedule_wide.csv schedule_ros2.yaml drape.svg report.html mold.vtu \
-  {uniform,wave,optimised}.pvd {uniform,wave,optimised}_{000,020}.vtu; do
+for file in resolved.json result.json evaluations.jsonl schedule.json schedule.csv schedule_wide.csv schedule_ros2.yaml fibres.csv fibres.csv-metadata.json pattern.dxf drape.svg report.html mold.vtu \
+  {uniform,wave,optimised}{,_grippers,_interlinks}.pvd {uniform,wave,optimised}{,_grippers,_interlinks}_{000,020}.vtu {mold,boundary}.pvd; do
   [ -s "$work/two/$file" ] || fail "plan: $file is missing or empty"
 done
 result=$work/two/result.json

@@ -18,7 +18,7 @@ has targets gripper position boundary max_shear_deg mean_shear_deg corners
 cmp -s "$work/stdout" "$work/out/result.json" || fail "result.json differs from --json"
 [ "$(head -n 1 "$work/out/net.csv")" = u,v,x,y,z,shear_deg ] || fail "net.csv has another head"
 awk -F, 'NR > 1 && NF != 6 {bad = 1} END {exit bad || NR < 100}' "$work/out/net.csv" || fail "net.csv is no table of the net"
-[ -s "$work/out/net.vtu" ] || fail "no net.vtu"
+for file in net.vtu net.pvd boundary.pvd targets.pvd pattern.dxf; do [ -s "$work/out/$file" ] || fail "no $file"; done
 cp "$work/stdout" "$work/first"
 run map "$work/out/resolved.json" --json
 cmp -s "$work/stdout" "$work/first" || fail "the resolved case gives another result"

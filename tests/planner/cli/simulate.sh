@@ -26,7 +26,7 @@ within "$work/first.json" /dt 1e-9 1e-2
 expect 0 simulate "$quick" --json --fidelity screen --out "$work/out" --frames 2
 same "$(value "$work/first.json" /state_hash)" "$(value "$work/stdout" /state_hash)" "two runs"
 same_file "$work/stdout" "$work/out/result.json"
-for file in resolved.json schedule.json schedule.csv schedule.csv-metadata.json schedule_wide.csv schedule_ros2.yaml ply.pvd ply_000.vtu ply_001.vtu mold.vtu drape.svg; do
+for file in resolved.json schedule.json schedule.csv schedule.csv-metadata.json schedule_wide.csv schedule_ros2.yaml fibres.csv fibres.csv-metadata.json ply.pvd ply_000.vtu ply_001.vtu mold.vtu drape.svg; do
   [ -s "$work/out/$file" ] || fail "simulate: $file is missing or empty"
 done
 expect 0 simulate "$work/out/resolved.json" --json --fidelity screen

@@ -22,7 +22,7 @@ same '["shell, 3 section points"]' "$(value "$bare" /terms)" "terms of a bare st
 has "$bare" /energy/kinetic /energy/internal /energy/hourglass /energy/balance_error /steps /dt /state_hash /status
 lacks "$bare" /energy/external /energy/friction /energy/contact /energy/damping /energy/constraint \
   /largest_penetration /largest_link_error /probes /score
-same 'Name="director" Name="shear" Name="warp_strain" Name="weft_strain" ' "$(arrays "$work/bare/ply_000.vtu")" "arrays"
+same 'Name="director" Name="shear_deg" Name="warp_strain" Name="weft_strain" ' "$(arrays "$work/bare/ply_000.vtu")" "arrays"
 grep -qE 'friction|contact|damping|constraint|external' "$work/stdout" && fail "the summary tells of what is absent"
 
 # Each section brings its own columns and no others.
@@ -35,7 +35,7 @@ has "$work/stdout" /energy/contact /largest_penetration
 lacks "$work/stdout" /energy/friction /energy/damping /energy/constraint /largest_link_error
 expect 0 simulate "$source/cases/incline.json" --out "$work/incline" --frames 1 --set 'duration=5 ms'
 has "$work/incline/result.json" /energy/contact /energy/friction
-grep -q 'Name="gap"' "$work/incline/ply_000.vtu" || fail "no gap though there is a mold"
+grep -q 'Name="gap_m"' "$work/incline/ply_000.vtu" || fail "no gap though there is a mold"
 
 # All at once.
 expect 0 simulate "$ladder" --out "$work/all" --frames 2 --set 'fem.mesh_size=20 mm' --set fem.fibre_mass_scaling=1.5 \
@@ -46,7 +46,7 @@ has "$all" /energy/{kinetic,internal,external,friction,contact,damping,constrain
 lacks "$all" /probes
 same "terms: [shell with rates, 5 section points] [gravity] [contact with friction] [fibre inertia] [mass damping] [gripper rig with interlinks] [fixed joint]" \
   "$(grep '^terms: ' "$work/stderr")" "terms of the whole ladder"
-grep -q 'Name="gap"' "$work/all/ply_000.vtu" || fail "no gap in a drape"
+grep -q 'Name="gap_m"' "$work/all/ply_000.vtu" || fail "no gap in a drape"
 # Without interlinks and a fixed joint there is no error of theirs, without damping nothing is damped.
 expect 0 simulate "$ladder" --json --set 'fem.mesh_size=20 mm' --set fem.fibre_mass_scaling=1 --set fem.rates=false \
   --set grippers.interlinks=false --set grippers.fixed=null --set damping=null --set friction=null \
