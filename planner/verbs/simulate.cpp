@@ -9,7 +9,6 @@
 #include "planner/base/quantity.hpp"
 #include "planner/base/spelling.hpp"
 #include "planner/base/text.hpp"
-#include "planner/cli/cli.hpp"
 #include "planner/drape/acceptance.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/drape/result_fields.hpp"
@@ -23,6 +22,7 @@
 #include "planner/schedule/robot_files.hpp"
 #include "planner/search/plan.hpp"
 #include "planner/trust/setting_runs.hpp"
+#include "planner/verbs/verbs.hpp"
 #include "planner/views/files.hpp"
 #include "planner/views/history.hpp"
 

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "planner/base/spelling.hpp"
-#include "planner/cli/cli.hpp"
-#include "planner/cli/process.hpp"
+#include "planner/verbs/verbs.hpp"
 
 namespace drapeplan {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "planner/cli/cli.hpp"
 #include "planner/drape/map_result.hpp"
 #include "planner/report/vtu.hpp"
+#include "planner/verbs/verbs.hpp"
 
 namespace drapeplan {
 namespace {
