@@ -68,6 +68,15 @@ std::vector<std::string> names_in(const fs::path& folder) {
 
 }  // namespace
 
+std::string verb_of_results(const fs::path& folder) {
+  const int file =
+      ::open((folder / kRunLock).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY);
+  if (file < 0) return "";
+  const std::string lock = first_bytes(file);
+  ::close(file);
+  return verb_of(lock);
+}
+
 bool is_result_name(std::string_view name) {
   static constexpr std::array kNames{"result.json",
                                      "resolved.json",

@@ -11,6 +11,9 @@ namespace drapeplan {
 /// The file of a results folder that a run locks; it names the verb that made the results, and the process.
 inline constexpr const char* kRunLock = "run.lock";
 
+/// The verb whose results a folder holds, by its run.lock; empty if it has none of ours.
+std::string verb_of_results(const std::filesystem::path& folder);
+
 /// The folder of one run's results. While the object lives, no other run can own the folder: run.lock is
 /// locked, and the system lifts the lock of a process that ends, in whatever way. The file stays, and says
 /// from then on whose results the folder holds. Use: make the object, check all input, `begin()`, work,

@@ -31,20 +31,6 @@ struct CommonOptions {
 /// What the chosen verb does; returns the exit code. Set while the command line is parsed, called afterwards.
 using Action = std::function<int()>;
 
-/// One function per verb, in planner/cli/<verb>.cpp. `action` must outlive the parsing.
-void add_check(CLI::App& program, Action& action);
-void add_schema(CLI::App& program, Action& action);
-void add_explain(CLI::App& program, Action& action);
-void add_plan(CLI::App& program, Action& action);
-void add_simulate(CLI::App& program, Action& action);
-void add_map(CLI::App& program, Action& action);
-void add_reach(CLI::App& program, Action& action);
-void add_characterise(CLI::App& program, Action& action);
-void add_bench(CLI::App& program, Action& action);
-void add_stress(CLI::App& program, Action& action);
-void add_study(CLI::App& program, Action& action);
-void add_validate(CLI::App& program, Action& action);
-
 void add_common_options(CLI::App& verb, CommonOptions& options);
 
 /// Calls `work`, and turns what it throws into a message and an exit code.

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <stdexcept>
 
 #include "planner/drape/acceptance.hpp"
 #include "planner/drape/result_fields.hpp"
@@ -306,6 +309,23 @@ nlohmann::json diagnosis_json(const Diagnosis& diagnosis, const RigOptions& rig)
                       {"gripper", rig.indices(edge->gripper)},
                       {"pad_offset", edge->pad_offset}};
   return result;
+}
+
+std::optional<StrokeEffects> effects_from(const nlohmann::json& value, const RigOptions& rig) {
+  if (!value.contains("effects_fidelity")) return std::nullopt;
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  StrokeEffects effects{.fidelity = value.at("effects_fidelity").get<std::string>(), .values = {}};
+  for (const nlohmann::json& one : value.at("effects")) {
+    const int gripper = rig.gripper_at(one.at("gripper").get<std::array<int, 2>>());
+    if (gripper < 0 || gripper >= rig.count()) throw std::invalid_argument("effects: no gripper of this rig");
+    effects.values.push_back({.gripper = gripper,
+                              .height = one.at("of") == "height",
+                              .value = one.at("value").get<double>(),
+                              .more = number_or(one.at("more"), kNaN),
+                              .less = number_or(one.at("less"), kNaN)});
+  }
+  if (effects.values.empty()) throw std::invalid_argument("effects: there are none");
+  return effects;
 }
 
 }  // namespace drapeplan

@@ -39,5 +39,8 @@ std::string remedy_text(const Diagnosis& diagnosis, const RigOptions& rig);
 std::string reasons_text(const Diagnosis& diagnosis, const RigOptions& rig);
 
 nlohmann::json diagnosis_json(const Diagnosis& diagnosis, const RigOptions& rig);
+/// The effects in what `diagnosis_json` wrote; nothing where none were simulated.
+/// @throws std::exception if they are no effects of this rig.
+std::optional<StrokeEffects> effects_from(const nlohmann::json& value, const RigOptions& rig);
 
 }  // namespace drapeplan

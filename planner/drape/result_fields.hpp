@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -71,6 +72,22 @@ inline nlohmann::json score_json(const Score& score) {
   out["followed"] = score.followed;
   if (!score.valid) out["reason"] = score.reason;
   return out;
+}
+
+/// A number that `finite` wrote. @param otherwise  what null stands for.
+inline double number_or(const nlohmann::json& value, double otherwise) {
+  return value.is_null() ? otherwise : value.get<double>();
+}
+
+/// What `score_json` wrote; parts that are null are NaN. @throws nlohmann::json::exception if it is no score.
+inline Score score_from(const nlohmann::json& value) {
+  Score score;
+  for (const ScorePart& part : kScoreParts)
+    score.*part.value = number_or(value.at(part.key), std::numeric_limits<double>::quiet_NaN());
+  score.valid = value.at("valid").get<bool>();
+  score.followed = value.at("followed").get<bool>();
+  if (!score.valid) score.reason = value.at("reason").get<std::string>();
+  return score;
 }
 
 /// The score of the ply as laid; where it was pressed, also that after pressing. Which one the objective

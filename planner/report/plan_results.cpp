@@ -43,10 +43,13 @@ json baselines_json(const PlanResult& result) {
 json design_json(const PlanResult& result) {
   json changes = json::array();
   for (const DesignChange& change : result.design->changes) {
-    changes.push_back({{"path", change.path},
-                       {"from", change.before},
-                       {"to", change.after},
-                       {"objective_without", finite(change.without.score.objective)}});
+    changes.push_back(
+        {{"path", change.path},
+         {"from", change.before},
+         {"to", change.after},
+         {"objective_without",
+          change.without.score.valid ? finite(change.without.score.objective) : json(nullptr)}});
+    if (!change.without.score.valid) changes.back()["reason_without"] = change.without.score.reason;
   }
   return {{"changes", std::move(changes)},
           {"case", kDesignFile},

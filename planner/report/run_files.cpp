@@ -352,7 +352,15 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
                      .case_hash = hex(case_hash(problem.definition()))});
   write_schedule(folder / "schedule_uniform.json", search.uniform.schedule, rig);
   write_schedule(folder / "schedule_wave.json", search.wave.schedule, rig);
+  if (result.design)
+    write_text(folder / kDesignFile, dump_json(resolved_case(problem.definition()), 2) + "\n");
+  write_plan_page(folder, problem, result, trust, diagnosis);
+}
 
+void write_plan_page(const std::filesystem::path& folder, const DrapeProblem& problem,
+                     const PlanResult& result, const PlanTrust& trust, const Diagnosis& diagnosis,
+                     const std::vector<std::string>& notes) {
+  const StagedResult& search = result.search;
   std::vector<DrapePanel> panels;
   const auto add = [&](const char* name, const Drape& drape, const std::string& fidelity,
                        const Schedule& schedule) {
@@ -371,13 +379,13 @@ void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem
   others.insert(others.end(), pattern.begin(), pattern.end());
 
   const std::string drape = drape_picture(panels, problem.definition().mold->extent());
-  const std::string sequence = schedule_picture(search.best.schedule, rig, "Optimised sequence");
+  const std::string sequence =
+      schedule_picture(search.best.schedule, *problem.definition().grippers, "Optimised sequence");
   write_text(folder / "drape.svg", drape);
   write_text(folder / "sequence.svg", sequence);
-  if (result.design)
-    write_text(folder / kDesignFile, dump_json(resolved_case(problem.definition()), 2) + "\n");
-  write_text(folder / "report.html",
-             html_report(page_of(problem, result, trust, diagnosis, drape, sequence, others)));
+  PlanReport page = page_of(problem, result, trust, diagnosis, drape, sequence, others);
+  page.notes.insert(page.notes.begin(), notes.begin(), notes.end());
+  write_text(folder / "report.html", html_report(page));
 }
 
 std::string comparison_table(const DrapeProblem& problem, const PlanResult& result) {

@@ -42,6 +42,13 @@ inline constexpr const char* kDesignFile = "design.json";
 void write_plan(const std::filesystem::path& folder, const DrapeProblem& problem, const PlanResult& result,
                 const PlanTrust& trust = {}, const Diagnosis& diagnosis = {}, double cycle = kDefaultCycle);
 
+/// Of these, what people look at: contour picture, charts, VTU and PVD, and report.html as the last one. All
+/// depends on the arguments only.
+/// @param notes  more of them for the page.
+void write_plan_page(const std::filesystem::path& folder, const DrapeProblem& problem,
+                     const PlanResult& result, const PlanTrust& trust, const Diagnosis& diagnosis,
+                     const std::vector<std::string>& notes = {});
+
 /// result.json of a plan (plan_results.cpp).
 nlohmann::json plan_json(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,
                          const Diagnosis& diagnosis);

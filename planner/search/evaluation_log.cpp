@@ -32,10 +32,6 @@ std::uint64_t from_hex(const json& text) {
   return std::stoull(text.get<std::string>(), nullptr, 16);
 }
 
-double number_or(const json& value, double otherwise) {
-  return value.is_null() ? otherwise : value.get<double>();
-}
-
 /// "2026-11-29T15:37:00Z"
 std::string utc_now() {
   return fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
@@ -77,15 +73,6 @@ std::vector<float> fields_from(const json& text) {
 static_assert(std::endian::native == std::endian::little, "fields are written as they lie in memory");
 
 constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
-
-Score score_from(const json& j) {
-  Score score;
-  for (const ScorePart& part : kScoreParts) score.*part.value = number_or(j.at(part.key), kLost);
-  score.valid = j.at("valid").get<bool>();
-  score.followed = j.at("followed").get<bool>();
-  if (!score.valid) score.reason = j.at("reason").get<std::string>();
-  return score;
-}
 
 Evaluation from_json(const json& j) {
   Evaluation e;

@@ -70,5 +70,8 @@ FidelityChoice choose_fidelities(const Case& definition, EvaluationLog& log, int
 /// A table of the settings, what they are wrong by and what they cost, for people.
 std::string choice_table(const FidelityChoice& choice, const OptimiseOptions& optimise, int threads);
 nlohmann::json choice_json(const FidelityChoice& choice);
+/// What `choice_json` wrote, without the levels. @param fidelities  the chosen ones, of the resolved case.
+/// @throws std::exception if it is no choice of these.
+FidelityChoice choice_from(const nlohmann::json& value, const std::map<std::string, FemOptions>& fidelities);
 
 }  // namespace drapeplan

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "planner/base/parallel.hpp"
@@ -60,6 +61,24 @@ nlohmann::json choice_json(const FidelityChoice& choice) {
   return {
       {"chosen", std::move(chosen)}, {"levels", std::move(levels)}, {"ranked_against", choice.ranked_against},
       {"runs", choice.runs},         {"seconds", choice.seconds},   {"message", choice.message}};
+}
+
+FidelityChoice choice_from(const nlohmann::json& value, const std::map<std::string, FemOptions>& fidelities) {
+  FidelityChoice choice;
+  for (const nlohmann::json& one : value.at("chosen")) {
+    const std::string name = one.at("fidelity").get<std::string>();
+    choice.chosen.push_back({.name = name,
+                             .options = fidelities.at(name),
+                             .error = one.at("error").get<double>(),
+                             .objective_error = one.at("objective_error").get<double>(),
+                             .ranks = number_or(one.at("ranks"), std::numeric_limits<double>::quiet_NaN()),
+                             .seconds = one.at("seconds").get<double>()});
+  }
+  choice.ranked_against = value.at("ranked_against").get<std::string>();
+  choice.runs = value.at("runs").get<int>();
+  choice.seconds = value.at("seconds").get<double>();
+  choice.message = value.at("message").get<std::string>();
+  return choice;
 }
 
 }  // namespace drapeplan

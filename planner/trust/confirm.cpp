@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -27,19 +29,28 @@ struct FinerSetting {
   double seconds;  ///< of both runs
 };
 
+/// @param time  so much less speed.
+FemOptions finer_options(FemOptions report, bool cells, double time) {
+  if (cells) report.mesh_size /= kFinerCells;
+  report.time_scaling /= time;
+  return report;
+}
+
+/// Cells and time of all finer settings, the finest first.
+std::array<std::pair<bool, double>, 3> finer_ways(const FemOptions& report) {
+  const double slower = std::clamp(report.time_scaling, 1.0, kFinerTime);  // 1 where it is played as it is
+  return {{{true, slower}, {true, 1.0}, {false, slower}}};
+}
+
 /// The finest setting whose runs fit into the time; nothing if there is none that is finer.
 std::optional<FinerSetting> finer_setting(const FemOptions& report, double seconds_each,
                                           const SideRuns& runs) {
-  const double slower = std::clamp(report.time_scaling, 1.0, kFinerTime);  // 1 where it is played as it is
   const double side_by_side = thread_count(runs.threads) > 1 ? 1 : 2;
-  for (const auto& [cells, time] : {std::pair{true, slower}, {true, 1.0}, {false, slower}}) {
+  for (const auto& [cells, time] : finer_ways(report)) {
     if (!cells && !(time > 1)) continue;
     const double seconds = side_by_side * seconds_each * cost(cells, time);
     if (runs.seconds > 0 && seconds > runs.seconds) continue;
-    FinerSetting finer{report, seconds};
-    if (cells) finer.options.mesh_size /= kFinerCells;
-    finer.options.time_scaling /= time;
-    return finer;
+    return FinerSetting{finer_options(report, cells, time), seconds};
   }
   return std::nullopt;
 }
@@ -110,6 +121,21 @@ nlohmann::json confirmation_json(const Confirmation& confirmation) {
       {"gain", finite(confirmation.gain())},
       {"gain_confirmed", confirmation.ran() ? finite(confirmation.finer_gain()) : nlohmann::json(nullptr)},
       {"confirmed", confirmation.confirmed()}};
+}
+
+Confirmation confirmation_from(const nlohmann::json& value, const FemOptions& report, const Score& reported,
+                               const Score& reported_baseline) {
+  const std::string setting = value.at("setting").get<std::string>();
+  for (const auto& [cells, time] : finer_ways(report)) {
+    const FemOptions options = finer_options(report, cells, time);
+    if (setting_text(options) != setting) continue;
+    return {.options = options,
+            .reported = reported,
+            .reported_baseline = reported_baseline,
+            .finer = score_from(value.at("best")),
+            .finer_baseline = score_from(value.at("baseline"))};
+  }
+  throw std::invalid_argument(fmt::format("confirmation: \"{}\" is not finer than `report`", setting));
 }
 
 }  // namespace drapeplan

@@ -53,5 +53,10 @@ double confirm_seconds(const FemOptions& report, double each, const SideRuns& ru
 /// "played again with 6.67 mm cells, ...: largest gap 9.8 mm (reported: 9.95), ...".
 std::string confirmation_text(const Confirmation& confirmation);
 nlohmann::json confirmation_json(const Confirmation& confirmation);
+/// What `confirmation_json` wrote of a plan. @param report  its setting.
+/// @param reported, reported_baseline  its scores at that setting.
+/// @throws std::exception if it is no confirmation at this setting.
+Confirmation confirmation_from(const nlohmann::json& value, const FemOptions& report, const Score& reported,
+                               const Score& reported_baseline);
 
 }  // namespace drapeplan

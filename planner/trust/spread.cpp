@@ -17,6 +17,8 @@
 namespace drapeplan {
 namespace {
 
+constexpr const char* kUndisturbed = "none";  // in results
+
 /// All times of the schedule.
 void stretch(Schedule& schedule, double factor) {
   for (std::vector<Knot>& path : schedule.paths) {
@@ -215,7 +217,7 @@ std::string spread_text(const PlantSpread& spread) {
 nlohmann::json spread_json(const PlantSpread& spread, Choose rule) {
   nlohmann::json plants = nlohmann::json::array();
   for (const DisturbedPair& pair : spread.pairs) {
-    plants.push_back({{"disturbance", pair.disturbance.empty() ? "none" : pair.disturbance},
+    plants.push_back({{"disturbance", pair.disturbance.empty() ? kUndisturbed : pair.disturbance},
                       {"best", score_json(pair.best)},
                       {"baseline", score_json(pair.baseline)}});
   }
@@ -236,6 +238,16 @@ nlohmann::json spread_json(const PlantSpread& spread, Choose rule) {
           {"better_in", spread.better()},
           {"plants", spread.plants()},
           {"disturbed", std::move(plants)}};
+}
+
+PlantSpread spread_from(const nlohmann::json& value) {
+  PlantSpread spread{.fidelity = value.at("fidelity").get<std::string>(), .pairs = {}};
+  for (const nlohmann::json& plant : value.at("disturbed")) {
+    const std::string name = plant.at("disturbance").get<std::string>();
+    spread.pairs.push_back(
+        {name == kUndisturbed ? "" : name, score_from(plant.at("best")), score_from(plant.at("baseline"))});
+  }
+  return spread;
 }
 
 }  // namespace drapeplan

@@ -71,5 +71,7 @@ const char* name_of(Choose rule);
 std::string spread_text(const PlantSpread& spread);
 /// @param rule  by which the best was chosen.
 nlohmann::json spread_json(const PlantSpread& spread, Choose rule = Choose::nominal);
+/// What `spread_json` wrote. @throws nlohmann::json::exception if it is no spread.
+PlantSpread spread_from(const nlohmann::json& value);
 
 }  // namespace drapeplan

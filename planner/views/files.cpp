@@ -187,7 +187,9 @@ class Page {
       page_.view = space_view(viewed, drape.mapping);
       page_.tables.push_back(angles_table(viewed, drape.mapping));
     }
-    page_.notes = source_notes(definition);
+    page_.notes = std::move(drape.notes);
+    const std::vector<std::string> sources = source_notes(definition);
+    page_.notes.insert(page_.notes.end(), sources.begin(), sources.end());
     page_.figures = std::move(drape.figures);
     page_.facts = {
         {"shown", time.empty() ? "" : fmt::format("{:.6g} s to {:.6g} s", time.front(), time.back())},

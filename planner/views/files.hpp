@@ -32,6 +32,7 @@ struct DrapePage {
   const std::vector<Snapshot>* frames = nullptr;  ///< of the run, for the view in space; null: without it
   const MapResult* mapping = nullptr;             ///< of the ply; null without one
   std::vector<std::pair<std::string, std::string>> files;  ///< that are there already: name, what it holds
+  std::vector<std::string> notes;                          ///< more of them, shown first
 };
 
 /// Writes probes.csv, grips.csv and profile_NAME.csv as far as the case asks for them, the picture of each

@@ -12,13 +12,13 @@
 #include "planner/base/text.hpp"
 #include "planner/batch/run_folders.hpp"
 #include "planner/batch/summary.hpp"
-#include "planner/cli/cli.hpp"
 #include "planner/cli/process.hpp"
 #include "planner/drape/run_checks.hpp"
 #include "planner/report/run_files.hpp"
 #include "planner/search/interrupted.hpp"
 #include "planner/search/plan.hpp"
 #include "planner/trust/after_search.hpp"
+#include "planner/verbs/verbs.hpp"
 
 namespace drapeplan {
 namespace {

@@ -11,10 +11,10 @@
 #include "fem/run/throughput.hpp"
 #include "planner/base/parallel.hpp"
 #include "planner/base/text.hpp"
-#include "planner/cli/cli.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/schedule/strategy.hpp"
+#include "planner/verbs/verbs.hpp"
 
 namespace drapeplan {
 namespace {

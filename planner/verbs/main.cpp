@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "planner/base/spelling.hpp"
-#include "planner/cli/cli.hpp"
-#include "planner/cli/process.hpp"
+#include "planner/verbs/verbs.hpp"
 
 namespace drapeplan {
 namespace {
@@ -36,6 +35,7 @@ int run(int argc, char** argv) {
   add_map(program, action);
   add_reach(program, action);
   add_simulate(program, action);
+  add_report(program, action);
   add_bench(program, action);
   add_study(program, action);
   add_characterise(program, action);

@@ -9,12 +9,10 @@
 #include "planner/base/quantity.hpp"
 #include "planner/base/spelling.hpp"
 #include "planner/base/text.hpp"
-#include "planner/cli/cli.hpp"
 #include "planner/drape/acceptance.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/drape/run_checks.hpp"
-#include "planner/exports/run_exports.hpp"
 #include "planner/report/run_files.hpp"
 #include "planner/schedule/check.hpp"
 #include "planner/schedule/file.hpp"
@@ -23,7 +21,8 @@
 #include "planner/schedule/robot_files.hpp"
 #include "planner/search/plan.hpp"
 #include "planner/trust/setting_runs.hpp"
-#include "planner/views/files.hpp"
+#include "planner/verbs/verbs.hpp"
+#include "planner/views/drape_page.hpp"
 #include "planner/views/history.hpp"
 
 namespace drapeplan {
@@ -46,6 +45,7 @@ struct SimulateOptions {
 struct PartOfRun {
   std::optional<State> from;
   double pause = 0;
+  [[nodiscard]] RunPart request() const { return {.from = from ? &*from : nullptr, .pause = pause}; }
 };
 
 /// Reads what --restart and --pause say. @throws WrongInput with the reason.
@@ -137,6 +137,13 @@ void add_probes(const Recorder& recorder, json& result) {
   if (!probes.empty()) result["probes"] = std::move(probes);
 }
 
+Played played_of(const SimulateOptions& options) {
+  return {.schedule = options.schedule,
+          .fidelity = options.fidelity,
+          .frames = options.common.out.empty() ? 0 : options.frames,
+          .part = !options.restart.empty() || !options.pause.empty()};
+}
+
 /// A case without grippers: strips and specimens.
 int simulate_free(const Case& definition, const SimulateOptions& options) {
   const Model model = model_of(definition, definition.fidelities.at(options.fidelity));
@@ -145,36 +152,22 @@ int simulate_free(const Case& definition, const SimulateOptions& options) {
   try_save(options);
   begin_output(out, options.common);
   print_terms(model, definition, options.common);
-  const bool files = !options.common.out.empty();
-  std::vector<Snapshot> frames;
-  Recorder recorder(definition, model, nullptr);
-  RunRequest request;
-  request.duration = definition.duration;
-  request.from = part.from ? &*part.from : nullptr;
-  request.pause = part.pause;
-  request.frames = files ? options.frames : 0;
-  request.observe = [&frames](const Snapshot& frame) { frames.push_back(frame); };
-  request.samples = files ? kHistoryInstants : 0;
-  request.sample = [&recorder](const Snapshot& now) { recorder.see(now); };
-  const RunResult run = simulate(model, request);
-  recorder.see(run.final);
-  json result = summary_json(run.summary);
-  add_stable_step(model, run, result);
+  Played played = played_of(options);
+  played.schedule.clear();
+  const SeenRun seen = play_run(definition, model, played, part.request());
+  json result = summary_json(seen.run.summary);
+  add_stable_step(model, seen.run, result);
   result["terms"] = model.term_names();
-  add_probes(recorder, result);
-  const std::string text = summary_text(run.summary, model.node_count()) + probes_text(recorder.history());
-  keep_all([&] { save(options, model, run.state, nullptr); },
+  result["played"] = played_json(played);
+  add_probes(seen.recorder, result);
+  const std::string text =
+      summary_text(seen.run.summary, model.node_count()) + probes_text(seen.recorder.history());
+  keep_all([&] { save(options, model, seen.run.state, nullptr); },
            [&] {
-             if (files) {
-               DrapePage page;
-               page.frames = &frames;
-               page.files = write_exports(out.path(), "ply", definition,
-                                          {.scene = &model.scene(), .frames = &frames}, run);
-               write_run(options.common.out, definition, model, recorder, run, std::move(page));
-             }
+             if (out) write_run_page(out.path(), definition, model, seen);
              deliver(result, text, options.common, &definition);
            });
-  return run.summary.status != RunStatus::diverged ? kDone : kNotFinished;
+  return seen.run.summary.status != RunStatus::diverged ? kDone : kNotFinished;
 }
 
 /// A table has the motion itself. @param schedule  name of a schedule or a file.
@@ -219,25 +212,12 @@ std::string score_line(const Drape& drape) {
 }
 
 /// The files of a drape beside result.json and resolved.json.
-void write_drape(const std::filesystem::path& folder, const DrapeProblem& problem, const Drape& drape,
-                 const Schedule& schedule, const Recorder& recorder, const SimulateOptions& options,
-                 const std::string& verdict, const Diagnosis& diagnosis) {
+void write_drape(const OutputFolder& out, const DrapeProblem& problem, const SeenDrape& seen,
+                 const Schedule& schedule, const SimulateOptions& options, const std::string& verdict,
+                 const Diagnosis& diagnosis) {
   const Case& definition = problem.definition();
-  const Model& model = problem.model(options.fidelity);
-  NamedFiles files{{"schedule.json", "the sequence, knots"}};
-  const auto list = [&files](const NamedFiles& more) { files.insert(files.end(), more.begin(), more.end()); };
-  list(robot_files());
-  list(write_exports(folder, "ply", definition,
-                     {.scene = &model.scene(),
-                      .frames = &drape.frames,
-                      .schedule = &schedule,
-                      .mapping = &problem.mapping()},
-                     drape.run));
-  const std::string picture = drape_picture({drape_panel(problem, drape, options.fidelity, options.schedule)},
-                                            definition.mold->extent());
-  write_text(folder / "drape.svg", picture);
-  write_schedule(folder / "schedule.json", schedule, *definition.grippers);
-  const std::vector<std::string> refusals = write_robot_files(folder, schedule, *definition.grippers,
+  write_schedule(out.path() / "schedule.json", schedule, *definition.grippers);
+  const std::vector<std::string> refusals = write_robot_files(out.path(), schedule, *definition.grippers,
                                                               {.cycle = cycle_of(options.cycle),
                                                                .case_name = definition.name,
                                                                .case_hash = hex(case_hash(definition)),
@@ -245,37 +225,21 @@ void write_drape(const std::filesystem::path& folder, const DrapeProblem& proble
   if (!refusals.empty())
     print_warnings({"no trajectory for ROS 2 is written, the rig cannot follow: " + refusals.front()},
                    options.common);
-  DrapePage page{
-      .verdict = verdict,
-      .reasons = {},
-      .rows = reference_rows(definition),
-      .figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", picture}},
-      .files = std::move(files)};
-  const std::vector<ReportRow> own = drape_rows(options.schedule, drape);
-  page.rows.insert(page.rows.end(), own.begin(), own.end());
-  if (!diagnosis.good()) page.reasons = reasons_report(problem, drape, options.fidelity, diagnosis);
-  page.frames = &drape.frames;
-  page.mapping = &problem.mapping();
-  write_run(folder, definition, model, recorder, drape.run, std::move(page));
+  write_drape_page(out.path(), problem, seen, schedule, played_of(options), verdict, diagnosis);
 }
 
 int simulate_drape(Case definition, const SimulateOptions& options) {
   const DrapeProblem problem(std::move(definition));
   print_warnings(map_warnings(problem.definition(), problem.mapping()), options.common);
   const Schedule schedule = schedule_of(problem, options.schedule);
-  const bool files = !options.common.out.empty();
   const Model& model = problem.model(options.fidelity);
   const PartOfRun part = part_of_run(options, model, &schedule);
   OutputFolder out = take_folder(options.common, "simulate");
   try_save(options);
   begin_output(out, options.common);
   print_terms(model, problem.definition(), options.common);
-  Recorder recorder(problem.definition(), model, &schedule);
-  RunPart run_part{.from = part.from ? &*part.from : nullptr, .pause = part.pause};
-  run_part.samples = files ? kHistoryInstants : 0;
-  run_part.sample = [&recorder](const Snapshot& now) { recorder.see(now); };
-  const Drape drape = problem.run(schedule, options.fidelity, files ? options.frames : 0, run_part);
-  recorder.see(drape.run.final);
+  const SeenDrape seen = play_drape(problem, schedule, played_of(options), part.request());
+  const Drape& drape = seen.drape;
   json result = summary_json(drape.run.summary);
   add_stable_step(model, drape.run, result);
   add_scores(drape.score, drape.other, result);
@@ -285,22 +249,21 @@ int simulate_drape(Case definition, const SimulateOptions& options) {
     const Acceptance acceptance = acceptance_of(problem, drape, options.fidelity);
     result["acceptance"] = acceptance_json(acceptance);
     verdict = acceptance_text(acceptance);
-    if (files) diagnosis = diagnosis_of(problem, drape, options.fidelity);
+    if (out) diagnosis = diagnosis_of(problem, drape, options.fidelity);
     if (!diagnosis.good()) result["diagnosis"] = diagnosis_json(diagnosis, *problem.definition().grippers);
   }
   const std::vector<std::string> warnings = drape_warnings(problem, drape, options.fidelity);
   print_warnings(warnings, options.common);
   result["warnings"] = warnings;
   result["terms"] = model.term_names();
-  add_probes(recorder, result);
+  result["played"] = played_json(played_of(options));
+  add_probes(seen.recorder, result);
   const std::string text = summary_text(drape.run.summary, model.node_count()) + score_line(drape) +
-                           probes_text(recorder.history()) + verdict + (verdict.empty() ? "" : "\n") +
+                           probes_text(seen.recorder.history()) + verdict + (verdict.empty() ? "" : "\n") +
                            reasons_text(diagnosis, *problem.definition().grippers);
   keep_all([&] { save(options, model, drape.run.state, &schedule); },
            [&] {
-             if (files)
-               write_drape(options.common.out, problem, drape, schedule, recorder, options, verdict,
-                           diagnosis);
+             if (out) write_drape(out, problem, seen, schedule, options, verdict, diagnosis);
              deliver(result, text, options.common, &problem.definition());
            });
   return drape.score.valid || drape.run.summary.status == RunStatus::paused ? kDone : kNotFinished;

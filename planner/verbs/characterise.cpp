@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "planner/characterise/files.hpp"
-#include "planner/cli/cli.hpp"
+#include "planner/verbs/verbs.hpp"
 
 namespace drapeplan {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "planner/cli/cli.hpp"
 #include "planner/drape/map_result.hpp"
 #include "planner/exports/mapped_files.hpp"
 #include "planner/exports/pattern.hpp"
+#include "planner/verbs/verbs.hpp"
 
 namespace drapeplan {
 namespace {

@@ -4,9 +4,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "planner/cli/cli.hpp"
 #include "planner/drape/map_result.hpp"
 #include "planner/search/plan.hpp"
+#include "planner/verbs/verbs.hpp"
 
 namespace drapeplan {
 namespace {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "planner/base/text.hpp"
-#include "planner/cli/cli.hpp"
 #include "planner/validate/files.hpp"
+#include "planner/verbs/verbs.hpp"
 
 namespace drapeplan {
 namespace {

@@ -6,13 +6,13 @@
 
 #include "mapping/error.hpp"
 #include "planner/base/quantity.hpp"
-#include "planner/cli/cli.hpp"
 #include "planner/drape/floor_changes.hpp"
 #include "planner/drape/map_result.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/exports/mapped_files.hpp"
 #include "planner/reach/reach.hpp"
+#include "planner/verbs/verbs.hpp"
 
 namespace drapeplan {
 namespace {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "planner/base/text.hpp"
-#include "planner/cli/cli.hpp"
 #include "planner/stress/stress.hpp"
+#include "planner/verbs/verbs.hpp"
 
 namespace drapeplan {
 namespace {

@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "planner/base/statistics.hpp"
-#include "planner/cli/cli.hpp"
 #include "planner/drape/problem.hpp"
 #include "planner/search/plan.hpp"
 #include "planner/study/files.hpp"
 #include "planner/study/runner.hpp"
+#include "planner/verbs/verbs.hpp"
 
 namespace drapeplan {
 namespace {
