@@ -242,9 +242,8 @@ std::string remedy_of(const Fold& fold, const RigOptions& rig, bool pressed) {
     case FoldKind::pad_rim:
       return "Smaller pads (grippers.pad_radius) shear with the ply.";
     case FoldKind::stall:
-      return "A stall goes where the ply touches the mold later than the grippers around it, or with less "
-             "friction: begin at "
-             "this place.";
+      return "Where friction stalled the ply, let the grippers land from this place outwards, or lower the "
+             "friction.";
     case FoldKind::slack:
       return std::string("Slack between grippers goes where they land further apart") +
              (rig.interlinks
@@ -258,8 +257,8 @@ std::string remedy_of(const EdgeMiss& edge, const RigOptions& rig) {
   if (!edge.by_gripper())
     return "Grippers nearer to the edge, or more of them, hold the margin of the ply in its place.";
   if (rig.driven == Driven::z)
-    return "The edge follows its grippers, which only heights move in-plane: drapeplan reach shows how near "
-           "they can come.";
+    return "The edge follows its grippers. Only z is driven: the heights of neighbours before they land move "
+           "them in-plane.";
   return "The edge follows its grippers, which are late or too weak for the ply: slower strokes, or more "
          "force.";
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "planner/base/text.hpp"
 #include "planner/page/assets.hpp"
@@ -75,9 +76,10 @@ std::string score_table(const std::vector<ReportRow>& rows, double ply_area) {
          "</tbody>\n<caption><span>Lower is better; the best value of a column stands out. Gap: between the "
          "ply\u2019s underside and the mold at the end. Wrinkled area: gap above the threshold where the ply "
          "does not bridge a hollow, below it its share of the ply. Boundary offset: between the ply\u2019s "
-         "edge and the prescribed "
-         "boundary. "
-         "Rows in italics are reported elsewhere and are not compared." +
+         "edge and the prescribed boundary." +
+         (std::any_of(rows.begin(), rows.end(), [](const ReportRow& row) { return row.reference; })
+              ? " Rows in italics are reported elsewhere and are not compared."
+              : "") +
          (std::any_of(rows.begin(), rows.end(), [](const ReportRow& row) { return row.beside; })
               ? " Grey rows are scores that the objective does not take, or drapes at a finer setting: they "
                 "are not compared."
@@ -149,6 +151,35 @@ std::string reasons_text(const ReportReasons& reasons) {
   return text;
 }
 
+/// Words that an engineer need not know, on a page with scores.
+constexpr std::array<std::pair<const char*, const char*>, 9> kWords{{
+    {"objective",
+     "the weighted sum of the parts of the score, each over its reference value; lower is better, and "
+     "0 is a perfect drape"},
+    {"prescribed boundary", "where the edge of the ply lies if it is draped as it was mapped"},
+    {"mapped net",
+     "the fibres of the ply as the kinematic mapping lays them on the mold, without any machine"},
+    {"floor",
+     "the smallest gap that a ply whose fibres hardly stretch can have under this rig, whatever the "
+     "schedule"},
+    {"interlinks", "the bars between the joints of neighbouring grippers"},
+    {"lag", "how far a joint is behind its command before its pad touches the mold"},
+    {"screen, search, report",
+     "numerical settings, from cheap to careful: schedules are sought at the first ones, and "
+     "all figures of this page are at the last one unless another is named"},
+    {"cells, time x, step x",
+     "size of the finite elements; by how much faster the schedule is played in the simulation; "
+     "by how much mass on the fibres lengthens a time step"},
+    {"state hash", "a fingerprint of the end of the run: the same numbers give the same one"},
+}};
+
+std::string words_text() {
+  std::string text = "<details><summary>Words on this page</summary>\n<table class=\"pairs\">\n";
+  for (const auto& [word, meaning] : kWords)
+    text += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", word, meaning);
+  return text + "</table>\n</details>\n";
+}
+
 /// Words on lines of at most `width` characters, as far as no word is longer.
 std::vector<std::string> wrapped(const std::string& words, size_t width) {
   std::vector<std::string> lines;
@@ -170,7 +201,8 @@ std::string html_report(const PlanReport& report) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<title>{0} \u2013 draping plan</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
       escape_markup(report.title), kPageStyle);
-  page += paragraph(report.description, "soft") + paragraph(report.verdict, "lead") + report.view;
+  page += paragraph(report.description, "soft") + paragraph(report.verdict, "lead") +
+          paragraph(report.outcome) + report.view;
   if (report.reasons) page += reasons_text(*report.reasons);
   if (!report.reach.empty()) page += heading("What the rig can reach") + paragraph(report.reach);
   page += score_table(report.rows, report.ply_area);
@@ -184,6 +216,7 @@ std::string html_report(const PlanReport& report) {
   }
   page += pairs("The run", report.facts, false) + pairs("Settings", report.settings, true) +
           file_list(report.files);
+  if (!report.rows.empty()) page += words_text();
   return page + "</body>\n</html>\n";
 }
 

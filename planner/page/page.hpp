@@ -48,7 +48,8 @@ struct ReportReasons {
 struct PlanReport {
   std::string title;                     ///< name of the case
   std::string description;               ///< what is draped, one or two sentences
-  std::string verdict;                   ///< good enough or not, and what came out
+  std::string verdict;                   ///< good enough or not, and what forbids it
+  std::string outcome = {};              ///< what was found, and how it was confirmed
   std::optional<ReportReasons> reasons;  ///< beside a drape that is not accepted
   std::string view;                      ///< of the drape in space, from `view_markup`; embedded as it is
   std::string reach;                     ///< what the rig can reach at all, one or two sentences

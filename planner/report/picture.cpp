@@ -262,6 +262,9 @@ void draw_panel(Svg& svg, const DrapePanel& panel, const Vector2d& corner, const
     if (g < panel.weights.size())
       svg.circle(pads[g], radius, {.fill = kEmphasis, .opacity = std::clamp(panel.weights[g], 0.0, 1.0)});
     svg.circle(pads[g], radius, {.stroke = ink::kText, .width = 0.8, .opacity = 0.55});
+    if (g < panel.pad_names.size())
+      svg.text(pads[g] + Vector2d(0, radius + 12), panel.pad_names[g],
+               {.size = 11, .anchor = Svg::Anchor::middle, .halo = true});
   }
   draw_boundary(svg, pixels(view, panel.boundary));
   const std::vector<std::string> lines = draw_marks(svg, panel, view);

@@ -27,6 +27,7 @@ struct DrapePanel {
   std::vector<Eigen::Vector3d> folds = {};  ///< marked with their numbers, from 1 [m]
   /// How much each gripper matters, 0 to 1: its pad is filled so strongly; empty: none is.
   std::vector<double> weights = {};
+  std::vector<std::string> pad_names = {};  ///< written below their pads; empty: none are
 };
 
 /// SVG of the panels side by side with one colour scale from 0 to the largest gap of all panels [mm]: filled

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "planner/diagnosis/verdict.hpp"
 #include "planner/drape/acceptance.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/drape/run_checks.hpp"
@@ -106,7 +107,7 @@ json plan_json(const DrapeProblem& problem, const PlanResult& result, const Plan
                 {"interrupted", search.interrupted},
                 {"beats_baselines", search.beats_baselines},
                 {"message", search.message},
-                {"verdict", verdict_text(problem, result)},
+                {"verdict", verdict_text(problem, result, trust)},
                 {"force", best_force_text(problem, result)},
                 {"evaluations", search.evaluations},
                 {"failed_evaluations", search.failed_evaluations},

@@ -1,4 +1,6 @@
 #include "planner/report/run_files.hpp"
+#include "planner/diagnosis/verdict.hpp"
+#include "planner/report/robot_table.hpp"
 
 #include <fmt/format.h>
 
@@ -63,7 +65,8 @@ Chart history_chart(const StagedResult& search) {
 
 /// Gap against boundary offset: what no schedule can go below, what drapes have, and which of all candidates
 /// at the reporting fidelity no other one beats in gap, offset and duration.
-Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows, const StagedResult& search) {
+Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows, const StagedResult& search,
+                  const ScoreOptions& options) {
   Chart chart{.title = "Gap and boundary offset",
               .x_label = "largest boundary offset [mm]",
               .y_label = "largest gap [mm]",
@@ -77,6 +80,8 @@ Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows, c
   std::sort(floor.points.begin(), floor.points.end(),
             [](const auto& a, const auto& b) { return a.x() < b.x(); });
   chart.series.push_back(floor);
+  const double edge = 1e3 * options.target_boundary_offset, gap = 1e3 * options.target_gap;
+  chart.series.push_back({.name = "tolerances of the case", .points = {{0, gap}, {edge, gap}, {edge, 0}}});
   for (const ReportRow& row : rows) {
     if (!row.score.valid) continue;
     chart.series.push_back({.name = row.name,
@@ -119,17 +124,6 @@ std::string design_note(const PlanResult& result) {
 }
 
 }  // namespace
-
-std::string verdict_text(const DrapeProblem& problem, const PlanResult& result) {
-  const Acceptance acceptance = acceptance_of(problem, result.best, result.search.best_fidelity);
-  const std::string limit = out_of_reach_text(problem, acceptance);
-  return acceptance_text(acceptance) + (limit.empty() ? "" : " " + limit);
-}
-
-std::string best_force_text(const DrapeProblem& problem, const PlanResult& result) {
-  const Case& definition = problem.definition();
-  return force_text(result.best.score, definition.grippers->actuator_force_limit, definition.score.lag_tolerance);
-}
 
 std::vector<ReportRow> reference_rows(const Case& definition) {
   std::vector<ReportRow> rows;
@@ -244,7 +238,7 @@ void add_finer_rows(const Confirmation& confirmation, PlanReport& report) {
        {std::pair<const char*, const Score&>{"better baseline", confirmation.finer_baseline},
         {"optimised", confirmation.finer}})
     report.rows.push_back({.name = fmt::format("{}, {}", name, setting), .score = score, .beside = true});
-  report.verdict += fmt::format(" {}.", capitalised(confirmation_text(confirmation)));
+  report.outcome += fmt::format(" {}.", capitalised(confirmation_text(confirmation)));
 }
 
 }  // namespace
@@ -255,6 +249,7 @@ ReportReasons reasons_report(const DrapeProblem& problem, const Drape& drape, co
   DrapePanel panel = drape_panel(problem, drape, fidelity, "why");
   panel.subtitle.clear();
   for (const Fold& fold : diagnosis.folds) panel.folds.push_back(panel.position[size_t(fold.node)]);
+  for (int g = 0; g < rig.count(); ++g) panel.pad_names.push_back(rig.name(g));
   if (diagnosis.effects) {
     panel.weights.assign(size_t(rig.count()), 0.0);
     const double largest = diagnosis.effects->values.front().size();
@@ -290,7 +285,9 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   PlanReport report;
   report.title = problem.definition().name;
   report.description = problem.definition().description;
-  report.verdict = fmt::format("{} {}.", verdict_text(problem, result), capitalised(search.message));
+  report.verdict = verdict_text(problem, result, trust);
+  report.outcome = fmt::format("{}. {} schedules were simulated in {:.0f} s.", capitalised(search.message),
+                               search.evaluations, result.wall_seconds);
   report.reach = explain_reach(problem.reach_problem(), problem.reach()) + " " + problem.ply_floor().meaning;
   if (const std::string force = best_force_text(problem, result); !force.empty()) report.reach += " " + force;
   if (!diagnosis.good())
@@ -303,6 +300,8 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   if (trust.confirmation) add_finer_rows(*trust.confirmation, report);
   report.notes = notes_of(problem, result.best, search.best_fidelity);
   if (trust.spread) report.tables.push_back(spread_report(*trust.spread));
+  report.tables.push_back(
+      robot_table(search.best.name, search.best.schedule, problem.definition(), result.best.score));
   if (trust.choice) {
     report.tables.push_back(choice_report(*trust.choice));
     if (!trust.choice->message.empty()) report.notes.push_back(trust.choice->message);
@@ -317,7 +316,7 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
         {"Largest gap against largest boundary offset: drapes, and the floor below which no "
          "schedule comes while fibres stretch by 1 % at most; rings are the candidates that no other one "
          "beats in gap, offset and duration at once",
-         line_chart(floor_chart(front, report.rows, search))});
+         line_chart(floor_chart(front, report.rows, search, problem.definition().score))});
   }
   report.facts = {{"evaluations", fmt::to_string(search.evaluations)},
                   {"failed evaluations", fmt::to_string(search.failed_evaluations)},

@@ -53,12 +53,6 @@ void write_plan_page(const std::filesystem::path& folder, const DrapeProblem& pr
 nlohmann::json plan_json(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,
                          const Diagnosis& diagnosis);
 
-/// Whether the best drape is good enough, by the tolerances of its case; if not, whether another schedule could be.
-std::string verdict_text(const DrapeProblem& problem, const PlanResult& result);
-
-/// What the limit of force has to do with the best sequence; empty if no actuator was at it.
-std::string best_force_text(const DrapeProblem& problem, const PlanResult& result);
-
 /// The comparison as text: one row per reference and drape.
 std::string comparison_table(const DrapeProblem& problem, const PlanResult& result);
 

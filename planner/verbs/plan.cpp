@@ -13,6 +13,7 @@
 #include "planner/batch/run_folders.hpp"
 #include "planner/batch/summary.hpp"
 #include "planner/cli/process.hpp"
+#include "planner/diagnosis/verdict.hpp"
 #include "planner/drape/run_checks.hpp"
 #include "planner/report/run_files.hpp"
 #include "planner/search/interrupted.hpp"
@@ -88,7 +89,7 @@ void print_start(const DrapeProblem& problem) {
 
 std::string result_text(const DrapeProblem& problem, const PlanResult& result, const PlanTrust& trust,
                         const Diagnosis& diagnosis, const std::filesystem::path& folder) {
-  std::string text = fmt::format("\n{}\n", verdict_text(problem, result));
+  std::string text = fmt::format("\n{}\n", verdict_text(problem, result, trust));
   text += reasons_text(diagnosis, *problem.definition().grippers);
   text += fmt::format("\n{}\n{}\n", comparison_table(problem, result), result.search.message);
   if (const std::string force = best_force_text(problem, result); !force.empty()) text += force + "\n";
