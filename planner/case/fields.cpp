@@ -359,6 +359,8 @@ void visit_physics(FieldVisitor& v, CaseFields& fields) {
 void visit_case(FieldVisitor& v, CaseFields& fields) {
   Case& c = fields.definition;
   int format = 0;
+  std::string schema;  // for editors
+  v.field({"$schema", &schema, "Where an editor finds the schema of this file; it is not read"});
   v.field({"format", choice(format, {kCaseFormat}), "What this file is", Dimension::none, {}, true});
   v.field(
       {"name", &c.name, "Short name in tables and reports", Dimension::none, {}, false, "the file's name"});

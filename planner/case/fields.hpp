@@ -62,6 +62,8 @@ struct CaseFields {
 };
 
 inline constexpr const char* kCaseFormat = "drapeplan-case 1";
+/// The name of its schema: what `$schema` of a case says where the schema lies beside it.
+inline constexpr const char* kSchemaFile = "drapeplan-case-1.schema.json";
 
 /// States all fields of a case to `visitor`, in the order of the documentation.
 void visit_case(FieldVisitor& visitor, CaseFields& fields);

@@ -43,6 +43,10 @@ CaseReading read_case(const std::filesystem::path& file, const std::vector<std::
   return read_document(InputDocument(file, overrides, keys_that_may_name_files()), file.stem().string());
 }
 
+CaseReading read_case_document(const nlohmann::json& document, const std::string& name) {
+  return read_document(InputDocument(document), name);
+}
+
 CaseReading changed_case(const Case& definition, const std::vector<std::string>& overrides) {
   return read_document(InputDocument(resolved_case(definition), overrides), definition.name);
 }

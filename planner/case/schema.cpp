@@ -316,6 +316,7 @@ json case_schema() {
   visit_case(writer, defaults);
   json schema = std::move(writer.root);
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
+  schema["$id"] = kSchemaFile;
   schema["title"] = kCaseFormat;
   return schema;
 }

@@ -22,20 +22,6 @@ json error_json(const InputError& error) {
   return {{"file", error.file}, {"line", error.line}, {"path", error.path}, {"message", error.message}};
 }
 
-/// Maps the ply and builds the models of its runs, as far as the case has these.
-/// @return warnings.  @throws WrongInput, NotFinished.
-std::vector<std::string> try_case(const Case& definition) {
-  const bool simulates = definition.material.thickness > 0;
-  if (!definition.mapping || !definition.mold) {
-    if (simulates) static_cast<void>(model_of(definition, definition.fidelities.at(kReport)));
-    return {};
-  }
-  if (!definition.grippers || !simulates) return map_warnings(definition, map_case(definition));
-  const DrapeProblem problem(definition);
-  if (!definition.chooses_fidelities) build_models(problem);
-  return map_warnings(problem.definition(), problem.mapping());
-}
-
 /// What cannot be done with a case that has no fault in itself is an error of its file, what is odd a note.
 void try_case(const std::string& file, CaseReading& reading) {
   try {
@@ -106,6 +92,18 @@ int explain(const ExplainOptions& options) {
 }
 
 }  // namespace
+
+std::vector<std::string> try_case(const Case& definition) {
+  const bool simulates = definition.material.thickness > 0;
+  if (!definition.mapping || !definition.mold) {
+    if (simulates) static_cast<void>(model_of(definition, definition.fidelities.at(kReport)));
+    return {};
+  }
+  if (!definition.grippers || !simulates) return map_warnings(definition, map_case(definition));
+  const DrapeProblem problem(definition);
+  if (!definition.chooses_fidelities) build_models(problem);
+  return map_warnings(problem.definition(), problem.mapping());
+}
 
 void add_check(CLI::App& program, Action& action) {
   add_verb<CheckOptions>(

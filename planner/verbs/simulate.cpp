@@ -301,14 +301,17 @@ void add_simulate(CLI::App& program, Action& action) {
         verb.add_option("CASE", options.file, "case file")->required();
         verb.add_option("--schedule", options.schedule,
                         "uniform, wave, a schedule file, or a motion as schedule.csv or schedule_wide.csv "
-                        "have it (default: uniform)");
+                        "have it (default: uniform)")
+            ->type_name("uniform|wave|FILE");
         add_cycle(verb, options.cycle);
         verb.add_option("--fidelity", options.fidelity, "fidelity of the case (default: report)");
         verb.add_option("--frames", options.frames, "instants written for ParaView (default: 21)")
             ->check(CLI::Range(1, 10000));
-        verb.add_option("--pause", options.pause, "stops there, e.g. \"2 s\" of the schedule; needs --save");
-        verb.add_option("--save", options.save, "file for the last state, to go on from");
-        verb.add_option("--restart", options.restart, "goes on from a saved state, with the same bits");
+        verb.add_option("--pause", options.pause, "stops there, e.g. \"2 s\" of the schedule; needs --save")
+            ->type_name("TIME");
+        verb.add_option("--save", options.save, "file for the last state, to go on from")->type_name("FILE");
+        verb.add_option("--restart", options.restart, "goes on from a saved state, with the same bits")
+            ->type_name("FILE");
       },
       run_simulate);
 }

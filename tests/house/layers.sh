@@ -7,7 +7,7 @@ cd "$1" || exit 1
 # All rooms, from the ground up: a source may include what lies in its own room and in those before it.
 rooms=(mapping/surface mapping
   fem/{core,mesh,law,shell,rig,terms,model,run}
-  planner/{base,input,tables,molds,case,score,reach,schedule,drape,stress,method,search,trust,diagnosis,page,exports,report,batch,views,replay,study,measured,characterise,validate,cli,verbs})
+  planner/{base,input,tables,molds,case,score,reach,schedule,drape,stress,method,search,trust,diagnosis,page,exports,report,batch,views,replay,study,measured,characterise,validate,cli,verbs,program})
 least_files=4 most_files=15
 
 failures=0
