@@ -21,7 +21,8 @@ struct Example {
 constexpr std::array kExamples{
     Example{"", "drapeplan new mine.json", "a case to start from"},
     Example{"", "drapeplan check mine.json", "what is wrong with it"},
-    Example{"", "drapeplan simulate mine.json --out out/first", "one drape; open out/first/report.html"},
+    Example{"", "drapeplan simulate mine.json --fidelity screen --out out/first",
+            "one quick drape; open out/first/report.html"},
     Example{"", "drapeplan plan mine.json", "the search; open out/mine/report.html"},
     Example{"", "drapeplan plan --help", "options and examples of a verb"},
     Example{"plan", "drapeplan plan mine.json --budget \"30 min\" --out out/mine",

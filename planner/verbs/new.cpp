@@ -129,7 +129,8 @@ int make_new(const NewOptions& options) {
                   wanted.mold, rig["columns"].get<int>(), rig["rows"].get<int>());
   for (const std::string& note : notes) words += "  " + note + "\n";
   words += fmt::format(
-      "next: drapeplan check {0}\n      drapeplan simulate {0} --out out/first   # one drape, and its page\n"
+      "next: drapeplan check {0}\n      drapeplan simulate {0} --fidelity screen --out out/first   # one "
+      "quick drape, and its page\n"
       "      drapeplan plan {0}\n",
       options.file);
   if (options.common.json)
