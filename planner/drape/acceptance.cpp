@@ -50,7 +50,10 @@ Acceptance acceptance_of(const DrapeProblem& problem, const Drape& drape, const 
   const Score& score = last_score(drape);
   Acceptance result;
   result.pressed = drape.other.has_value();
-  if (!score.valid) return result;
+  if (!score.valid) {
+    result.reason = score.reason;
+    return result;
+  }
   const Case& definition = problem.definition();
   const ScoreOptions& options = definition.score;
   const Mesh& mesh = problem.model(fidelity).scene().mesh;
@@ -75,7 +78,7 @@ const FloorPoint* out_of_reach(const FloorFront& front, double gap, double edge)
 }
 
 std::string acceptance_text(const Acceptance& acceptance) {
-  if (acceptance.tolerances.empty()) return "Not accepted: the drape could not be simulated.";
+  if (acceptance.tolerances.empty()) return fmt::format("Not accepted: {}.", acceptance.reason);
   const bool accepted = acceptance.accepted();
   std::vector<std::string> parts;
   for (const Tolerance& tolerance : acceptance.tolerances) {

@@ -28,6 +28,7 @@ const Score& last_score(const Drape& drape);
 struct Acceptance {
   std::vector<Tolerance> tolerances;  ///< of gap and edge; none of a drape that failed
   bool pressed = false;
+  std::string reason;  ///< of a drape that failed
   [[nodiscard]] bool accepted() const;
 };
 

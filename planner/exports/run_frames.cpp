@@ -163,7 +163,7 @@ NamedFiles write_frames(const std::filesystem::path& folder, const std::string& 
   write("", "the ply", [&](const Snapshot& now) { return ply_grid(run, now); });
   if (scene.rig)
     write("_grippers", "the grippers", [&](const Snapshot& now) { return gripper_grid(run, now); });
-  if (scene.rig && scene.rig->interlinks)
+  if (scene.rig && scene.rig->interlinks && scene.rig->count() > 1)
     write("_interlinks", "the interlinks", [&](const Snapshot& now) { return interlink_grid(scene, now); });
   return files;
 }

@@ -166,7 +166,7 @@ constexpr std::array<std::pair<const char*, const char*>, 9> kWords{{
     {"lag", "how far a joint is behind its command before its pad touches the mold"},
     {"screen, search, report",
      "numerical settings, from cheap to careful: schedules are sought at the first ones, and "
-     "all figures of this page are at the last one unless another is named"},
+     "the figures of a plan are at the last one unless another is named"},
     {"cells, time x, step x",
      "size of the finite elements; by how much faster the schedule is played in the simulation; "
      "by how much mass on the fibres lengthens a time step"},

@@ -75,14 +75,28 @@ RunFolder open_run(const fs::path& folder) {
   return run;
 }
 
+namespace {
+
+/// A file that the run has written: nothing that may never end, as a pipe. What is absent is told by its
+/// reader.
+fs::path own_file(const RunFolder& run, const std::string& name) {
+  fs::path file = run.file(name);
+  std::error_code error;
+  if (fs::exists(file, error) && !fs::is_regular_file(file, error))
+    throw WrongInput(file.string() + ": is no file that a run has written");
+  return file;
+}
+
+}  // namespace
+
 Case case_in(const RunFolder& run, const std::string& name) {
-  CaseReading reading = read_case(run.file(name));
+  CaseReading reading = read_case(own_file(run, name));
   require_none(reading.errors);
   return std::move(reading.definition);
 }
 
 Schedule schedule_in(const RunFolder& run, const std::string& name, const RigOptions& rig) {
-  ScheduleReading reading = read_schedule(run.file(name), rig);
+  ScheduleReading reading = read_schedule(own_file(run, name), rig);
   require_none(reading.errors);
   return std::move(reading.value);
 }

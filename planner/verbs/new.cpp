@@ -22,7 +22,7 @@ namespace {
 struct NewOptions {
   CommonOptions common;
   std::string file;  ///< empty: stdout
-  std::string mold = "polynomial", unit = "1 mm", ply = "400x300", grippers;
+  std::string mold = "polynomial", unit, ply = "400x300", grippers;
 };
 
 /// "400x300" as two numbers. @throws WrongInput with the example if it is not that.
@@ -65,13 +65,15 @@ NewCase wanted_by(const NewOptions& options) {
   }
   const size_t equals = options.mold.find('=');
   wanted.mold = options.mold.substr(0, equals);
-  wanted.unit = options.unit;
+  if (!options.unit.empty()) wanted.unit = options.unit;
   const bool of_file = wanted.mold == "stl" || wanted.mold == "height_field";
   const bool known = of_file || wanted.mold == "polynomial" || wanted.mold == "sphere";
   if (!known || of_file != (equals != std::string::npos))
     throw WrongInput(fmt::format("--mold: \"{}\": expected polynomial, sphere, stl=FILE or height_field=FILE",
                                  options.mold));
   if (of_file) wanted.mold_file = options.mold.substr(equals + 1);
+  if (!of_file && !options.unit.empty())
+    throw WrongInput("--unit: is that of a file; a mold that is " + wanted.mold + " has none");
   return wanted;
 }
 
@@ -81,6 +83,7 @@ NewCase wanted_by(const NewOptions& options) {
 std::vector<std::string> checked(nlohmann::ordered_json value, const NewCase& wanted) {
   if (!wanted.mold_file.empty()) value["mold"]["file"] = std::filesystem::absolute(wanted.mold_file).string();
   CaseReading reading = read_case_document(value, "new case");
+  for (InputError& error : reading.errors) error.file = "new case";
   if (!reading.errors.empty()) throw InputErrors(reading.errors);
   std::vector<std::string> notes = std::move(reading.notes);
   for (const std::string& warning : try_case(reading.definition)) notes.push_back("warning: " + warning);
@@ -132,7 +135,7 @@ int make_new(const NewOptions& options) {
       "next: drapeplan check {0}\n      drapeplan simulate {0} --fidelity screen --out out/first   # one "
       "quick drape, and its page\n"
       "      drapeplan plan {0}\n",
-      options.file);
+      options.file.find(' ') == std::string::npos ? options.file : "'" + options.file + "'");
   if (options.common.json)
     print(text, true);
   else if (!options.common.quiet)
@@ -146,7 +149,9 @@ void add_new(CLI::App& program, Action& action) {
   add_verb<NewOptions>(
       program, action, "new", "writes a case file to start from",
       [](CLI::App& verb, NewOptions& options) {
-        verb.add_option("FILE", options.file, "where; it must not be there yet (default: stdout)");
+        verb.add_option("FILE", options.file, "where; it must not be there yet (default: stdout)")
+            ->check(
+                [](const std::string& name) { return std::string(name.empty() ? "the name is empty" : ""); });
         verb.add_option("--ply", options.ply, "width and height of the ply in mm (default: 400x300)")
             ->type_name("WxH");
         verb.add_option("--grippers", options.grippers,

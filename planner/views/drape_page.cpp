@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "planner/base/text.hpp"
+#include "planner/drape/run_checks.hpp"
 #include "planner/exports/run_exports.hpp"
 #include "planner/report/picture.hpp"
+#include "planner/report/robot_table.hpp"
 #include "planner/report/run_files.hpp"
 #include "planner/schedule/robot_files.hpp"
 #include "planner/views/files.hpp"
@@ -75,7 +77,12 @@ void write_drape_page(const std::filesystem::path& folder, const DrapeProblem& p
       .rows = reference_rows(definition),
       .figures = {{"Gap between ply and mold, seen from above, with the prescribed boundary", picture}},
       .files = std::move(files),
-      .notes = notes};
+      .notes = notes,
+      .fidelity = played.fidelity,
+      .tables = {robot_table(played.schedule, schedule, definition, drape.score)}};
+  for (const std::vector<std::string>& more :
+       {map_warnings(definition, problem.mapping()), drape_warnings(problem, drape, played.fidelity)})
+    page.notes.insert(page.notes.end(), more.begin(), more.end());
   const std::vector<ReportRow> own = drape_rows(played.schedule, drape);
   page.rows.insert(page.rows.end(), own.begin(), own.end());
   if (!diagnosis.good()) page.reasons = reasons_report(problem, drape, played.fidelity, diagnosis);

@@ -187,19 +187,22 @@ class Page {
       page_.view = space_view(viewed, drape.mapping);
       page_.tables.push_back(angles_table(viewed, drape.mapping));
     }
+    page_.tables.insert(page_.tables.end(), drape.tables.begin(), drape.tables.end());
     page_.notes = std::move(drape.notes);
     const std::vector<std::string> sources = source_notes(definition);
     page_.notes.insert(page_.notes.end(), sources.begin(), sources.end());
     page_.figures = std::move(drape.figures);
-    page_.facts = {
-        {"shown", time.empty() ? "" : fmt::format("{:.6g} s to {:.6g} s", time.front(), time.back())},
-        {"steps", fmt::format("{} of {:.3g} \u00b5s", summary.steps, 1e6 * summary.dt)},
-        {"nodes", fmt::to_string(model.node_count())},
-        {"wall time", fmt::format("{:.1f} s", summary.wall_seconds)},
-        {"time scaling", fmt::format("{:g}", seen.history().time_scaling)},
-        {"kinetic over internal energy, at most", fmt::format("{:.2g}", summary.largest_kinetic_ratio)},
-        {"energy balance error", fmt::format("{:.1e} of the largest energy", summary.energy.balance_error)},
-        {"state hash", hex(summary.state_hash)}};
+    if (!drape.fidelity.empty()) page_.facts = {{"fidelity", drape.fidelity}};
+    page_.facts.insert(
+        page_.facts.end(),
+        {{"shown", time.empty() ? "" : fmt::format("{:.6g} s to {:.6g} s", time.front(), time.back())},
+         {"steps", fmt::format("{} of {:.3g} \u00b5s", summary.steps, 1e6 * summary.dt)},
+         {"nodes", fmt::to_string(model.node_count())},
+         {"wall time", fmt::format("{:.1f} s", summary.wall_seconds)},
+         {"time scaling", fmt::format("{:g}", seen.history().time_scaling)},
+         {"kinetic over internal energy, at most", fmt::format("{:.2g}", summary.largest_kinetic_ratio)},
+         {"energy balance error", fmt::format("{:.1e} of the largest energy", summary.energy.balance_error)},
+         {"state hash", hex(summary.state_hash)}});
     page_.files = std::move(drape.files);
     page_.files.insert(page_.files.end(), {{"result.json", "all results"},
                                            {"resolved.json", "the complete case with all defaults"}});

@@ -33,6 +33,8 @@ struct DrapePage {
   const MapResult* mapping = nullptr;             ///< of the ply; null without one
   std::vector<std::pair<std::string, std::string>> files;  ///< that are there already: name, what it holds
   std::vector<std::string> notes;                          ///< more of them, shown first
+  std::string fidelity;                                    ///< at which it was played; empty: not told
+  std::vector<ReportTable> tables;                         ///< more of them, shown last
 };
 
 /// Writes probes.csv, grips.csv and profile_NAME.csv as far as the case asks for them, the picture of each

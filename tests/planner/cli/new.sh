@@ -37,6 +37,10 @@ for wrong in '--ply 400' '--ply 0x3' '--ply axb' '--grippers 2.5x3' '--grippers 
   says "${wrong%% *}" stderr
   [ ! -e cases/wrong.json ] && [ ! -e elsewhere ] || fail "something was written: $wrong"
 done
+expect 2 new cases/wrong.json --mold sphere --unit '5 km'
+says "--unit: is that of a file" stderr
+expect 2 new ''
+says "the name is empty" stderr
 
 # Version and help; nothing is coloured.
 expect 0 --version

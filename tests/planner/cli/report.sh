@@ -101,6 +101,9 @@ rm -rf "$work/copy" && cp -r "$plan" "$work/copy" && echo '{"best": 3}' >"$work/
 refused 2 "result.json: is not what \`plan\` of this version writes" "$work/copy"
 echo '{"best":' >"$work/copy/result.json"
 refused 2 "result.json" "$work/copy"
+rm -rf "$work/copy" && cp -r "$drape" "$work/copy" && rm "$work/copy/schedule.json" && mkfifo "$work/copy/schedule.json"
+expect 2 report "$work/copy"   # a pipe may never end
+says "schedule.json: is no file that a run has written"
 expect 0 map "$quick" --quiet --out "$work/map"
 refused 2 "holds results of \`map\`; \`report\` makes the pages of \`plan\` and \`simulate\` again" "$work/map"
 expect 0 simulate "$quick" --fidelity screen --pause '2 s' --save "$work/half" --frames 2 --quiet --out "$work/part"

@@ -67,6 +67,12 @@ for check in kinetic overhang; do
 done
 expect 3 simulate "$quick" --set score.kinetic_limit=1
 grep -qF 'thrown' "$work/stdout" "$work/stderr" || fail "a thrown ply is not marked"
+# The page says it, too, and at which fidelity, and what the robot's operator must know.
+expect 0 simulate "$quick" --fidelity screen --frames 2 --quiet --out "$work/paged"
+for words in '<li>kinetic: ' '<li>overhang: ' '<td>fidelity</td><td>screen</td>' '<h2>For the robot</h2>'; do
+  checks=$((checks + 1))
+  grep -qF "$words" "$work/paged/report.html" || fail "the page lacks $words"
+done
 expect 0 simulate "$quick" --json --fidelity screen --set material.shear.valid_to='1 deg'
 value "$work/stdout" /warnings/0 | grep -qF 'beyond what material.shear holds for (1.0 deg)' || fail "no warning"
 grep -qF 'warning: the largest shear is' "$work/stderr" || fail "no warning on stderr"

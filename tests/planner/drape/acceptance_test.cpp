@@ -70,7 +70,7 @@ TEST(Acceptance, OfAFailedDrapeIsRefused) {
   laid.drape.score = failed_score("torn");
   const Acceptance acceptance = acceptance_of(laid.problem, laid.drape, "screen");
   EXPECT_FALSE(acceptance.accepted());
-  EXPECT_EQ(acceptance_text(acceptance), "Not accepted: the drape could not be simulated.");
+  EXPECT_EQ(acceptance_text(acceptance), "Not accepted: torn.");
 }
 
 FloorPoint floor_at(double edge, double gap, bool converged = true) {
