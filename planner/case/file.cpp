@@ -44,7 +44,9 @@ CaseReading read_case(const std::filesystem::path& file, const std::vector<std::
 }
 
 CaseReading read_case_document(const nlohmann::json& document, const std::string& name) {
-  return read_document(InputDocument(document), name);
+  CaseReading reading = read_document(InputDocument(document), name);
+  for (InputError& error : reading.errors) error.file = name;
+  return reading;
 }
 
 CaseReading changed_case(const Case& definition, const std::vector<std::string>& overrides) {

@@ -22,7 +22,8 @@ struct CaseReading {
 /// bare word or quantity). Never throws for bad input.
 CaseReading read_case(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// The same of a document that no file holds; names of files in it are absolute. @param name  of the case.
+/// The same of a document that no file holds; names of files in it are absolute. @param name  of the case,
+/// and in its errors.
 CaseReading read_case_document(const nlohmann::json& document, const std::string& name);
 
 /// A case with overrides as above; read and checked anew.

@@ -1,6 +1,4 @@
 #include "planner/report/run_files.hpp"
-#include "planner/diagnosis/verdict.hpp"
-#include "planner/report/robot_table.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +11,7 @@
 #include "planner/base/json_text.hpp"
 #include "planner/base/text.hpp"
 #include "planner/case/file.hpp"
-#include "planner/drape/acceptance.hpp"
+#include "planner/diagnosis/verdict.hpp"
 #include "planner/drape/result_fields.hpp"
 #include "planner/drape/run_checks.hpp"
 #include "planner/exports/pattern.hpp"
@@ -21,6 +19,7 @@
 #include "planner/page/page.hpp"
 #include "planner/report/charts.hpp"
 #include "planner/report/page_parts.hpp"
+#include "planner/report/robot_table.hpp"
 #include "planner/schedule/file.hpp"
 #include "planner/score/scoring.hpp"
 #include "planner/search/finalists.hpp"
@@ -97,15 +96,6 @@ Chart floor_chart(const FloorFront& front, const std::vector<ReportRow>& rows, c
   return chart;
 }
 
-std::vector<std::string> notes_of(const DrapeProblem& problem, const Drape& best,
-                                  const std::string& fidelity) {
-  std::vector<std::string> notes = map_warnings(problem.definition(), problem.mapping());
-  for (const std::vector<std::string>& more :
-       {drape_warnings(problem, best, fidelity), source_notes(problem.definition())})
-    notes.insert(notes.end(), more.begin(), more.end());
-  return notes;
-}
-
 /// What was changed of the case, and what each change brought.
 std::string design_note(const PlanResult& result) {
   std::string text = fmt::format(
@@ -145,6 +135,14 @@ std::vector<ReportRow> drape_rows(const std::string& name, const Drape& drape) {
                     .score = drape.other->score,
                     .beside = true});
   return rows;
+}
+
+std::vector<std::string> warning_notes(const DrapeProblem& problem, const Drape& drape,
+                                       const std::string& fidelity) {
+  std::vector<std::string> notes = map_warnings(problem.definition(), problem.mapping());
+  const std::vector<std::string> more = drape_warnings(problem, drape, fidelity);
+  notes.insert(notes.end(), more.begin(), more.end());
+  return notes;
 }
 
 std::string terms_line(const Model& model) {
@@ -298,7 +296,9 @@ PlanReport page_of(const DrapeProblem& problem, const PlanResult& result, const 
   report.view = space_view(drapes, &problem.mapping());
   report.tables.push_back(angles_table(drapes, &problem.mapping()));
   if (trust.confirmation) add_finer_rows(*trust.confirmation, report);
-  report.notes = notes_of(problem, result.best, search.best_fidelity);
+  report.notes = warning_notes(problem, result.best, search.best_fidelity);
+  const std::vector<std::string> sources = source_notes(problem.definition());
+  report.notes.insert(report.notes.end(), sources.begin(), sources.end());
   if (trust.spread) report.tables.push_back(spread_report(*trust.spread));
   report.tables.push_back(
       robot_table(search.best.name, search.best.schedule, problem.definition(), result.best.score));

@@ -25,6 +25,10 @@ DrapePanel drape_panel(const DrapeProblem& problem, const Drape& drape, const st
 /// The published results that a case names, as rows of a table.
 std::vector<ReportRow> reference_rows(const Case& definition);
 
+/// All that a drape and its mapping are to be warned of, as notes of a page.
+std::vector<std::string> warning_notes(const DrapeProblem& problem, const Drape& drape,
+                                       const std::string& fidelity);
+
 /// The scores of one drape: that which the objective takes, and the other one of a ply that was pressed.
 std::vector<ReportRow> drape_rows(const std::string& name, const Drape& drape);
 

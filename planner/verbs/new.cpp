@@ -83,7 +83,6 @@ NewCase wanted_by(const NewOptions& options) {
 std::vector<std::string> checked(nlohmann::ordered_json value, const NewCase& wanted) {
   if (!wanted.mold_file.empty()) value["mold"]["file"] = std::filesystem::absolute(wanted.mold_file).string();
   CaseReading reading = read_case_document(value, "new case");
-  for (InputError& error : reading.errors) error.file = "new case";
   if (!reading.errors.empty()) throw InputErrors(reading.errors);
   std::vector<std::string> notes = std::move(reading.notes);
   for (const std::string& warning : try_case(reading.definition)) notes.push_back("warning: " + warning);

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "planner/base/text.hpp"
-#include "planner/drape/run_checks.hpp"
 #include "planner/exports/run_exports.hpp"
 #include "planner/report/picture.hpp"
 #include "planner/report/robot_table.hpp"
@@ -80,9 +79,8 @@ void write_drape_page(const std::filesystem::path& folder, const DrapeProblem& p
       .notes = notes,
       .fidelity = played.fidelity,
       .tables = {robot_table(played.schedule, schedule, definition, drape.score)}};
-  for (const std::vector<std::string>& more :
-       {map_warnings(definition, problem.mapping()), drape_warnings(problem, drape, played.fidelity)})
-    page.notes.insert(page.notes.end(), more.begin(), more.end());
+  const std::vector<std::string> warnings = warning_notes(problem, drape, played.fidelity);
+  page.notes.insert(page.notes.end(), warnings.begin(), warnings.end());
   const std::vector<ReportRow> own = drape_rows(played.schedule, drape);
   page.rows.insert(page.rows.end(), own.begin(), own.end());
   if (!diagnosis.good()) page.reasons = reasons_report(problem, drape, played.fidelity, diagnosis);

@@ -7,7 +7,6 @@ kills=${4:-5}
 plan=(plan "$quick" --quiet --set 'fidelities.search={"mesh_size": "30 mm", "time_scaling": 30}' --set optimise.finalists=1
   --set 'fem.mesh_size=34 mm' --set fem.time_scaling=20 --set optimise.evaluations=60)
 lines() { cat "$1/evaluations.jsonl" 2>/dev/null | wc -l; }
-says() { checks=$((checks + 1)); grep -qF -- "$1" "$work/stderr" || fail "no '$1' on stderr: $(head -c 400 "$work/stderr")"; }
 
 expect 0 "${plan[@]}" --out "$work/whole"
 total=$(lines "$work/whole")

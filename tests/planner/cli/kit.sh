@@ -16,6 +16,13 @@ expect() {
   [ "$got" = "$code" ] || fail "exit $got instead of $code: $*: $(head -c 400 "$work/stderr")"
 }
 
+# says TEXT [FILE]: the text stands on stderr, or in a file of $work.
+says() {
+  local in=${2:-stderr}
+  checks=$((checks + 1))
+  grep -qF -- "$1" "$work/$in" || fail "no '$1' on $in: $(head -c 400 "$work/$in")"
+}
+
 # refuse TEXT ARGUMENTS...: exit 2, TEXT on stderr, nothing on stdout, no output folder.
 refuse() {
   local text=$1

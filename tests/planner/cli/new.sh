@@ -3,7 +3,6 @@
 # Usage: new.sh DRAPEPLAN SOURCE_DIR JSON_VALUE
 set -uo pipefail
 . "$(dirname "$0")/kit.sh"
-says() { checks=$((checks + 1)); grep -qF -- "$1" "$work/$2" || fail "no '$1' on $2: $(head -c 300 "$work/$2")"; }
 
 # Cases of several sizes and molds are good ones, and a file is never replaced.
 cd "$work" || exit 1

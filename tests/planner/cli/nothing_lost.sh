@@ -7,10 +7,6 @@ set -uo pipefail
 few=(--set optimise.evaluations=1 --set optimise.finalists=1
   --set 'fem.mesh_size=40 mm' --set fem.time_scaling=30 --set 'fidelities={}')
 strip=(simulate "$source/cases/cantilever-150.json" --quiet --set 'duration=2 ms' --set 'fem.mesh_size=25 mm')
-says() {
-  checks=$((checks + 1))
-  grep -qF -- "$1" "$work/stderr" || fail "no '$1' on stderr: $(head -c 400 "$work/stderr")"
-}
 there() { for file in "$@"; do checks=$((checks + 1)); [ -e "$file" ] || fail "$file is not there"; done; }
 gone() { for file in "$@"; do checks=$((checks + 1)); [ ! -e "$file" ] || fail "$file is there"; done; }
 all_files() { (cd "$1" && find . -type f ! -name run.lock -exec cksum {} + | sort); }

@@ -5,10 +5,6 @@
 set -uo pipefail
 . "$(dirname "$0")/kit.sh"
 coarse=(--set 'fem.mesh_size=40 mm' --set fem.time_scaling=30 --set 'fidelities={}' --set optimise.finalists=1)
-says() {
-  checks=$((checks + 1))
-  grep -qF -- "$1" "$work/stderr" || fail "no '$1' on stderr: $(head -c 400 "$work/stderr")"
-}
 all_files() { (cd "$1" && find . -type f ! -name run.lock -exec cksum {} + | sort -k 3); }
 
 # same_page NAME RUN DRAPES: the files of people are removed, but for the page, which is made wrong: all come back.
